@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The engine: real frames in, displayed frames out, a report of what ran.
+ * The only header of engine/ that the rest of the daemon includes.
+ *
+ * One engine lives on one thread at a time, which must be the one that made it
+ * (it owns a GL context). Nothing in it is irreplaceable: it can be destroyed
+ * and made anew at any moment.
+ *
+ *   engine_begin(engine, frame, ...)       once per real frame
+ *   engine_render(engine, request, image)  once per displayed frame
+ *
+ * What is computed: docs/method.md. Source: Didyk et al. 2010, Sections 5, 6.
+ */
+#ifndef PURSUIT_ENGINE_H
+#define PURSUIT_ENGINE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "daemon/error.h"
+#include "daemon/frame.h"
+
+enum engine_context_kind {
+	ENGINE_CONTEXT_AUTO = 0,       /* EGL device with a GPU, EGL surfaceless, OSMesa: the first that works */
+	ENGINE_CONTEXT_EGL_SURFACELESS,
+	ENGINE_CONTEXT_EGL_DEVICE,
+	ENGINE_CONTEXT_OSMESA,
+};
+
+enum engine_blur {
+	ENGINE_BLUR_DOUBTFUL = 0, /* driven by grid distortion */
+	ENGINE_BLUR_EVERYWHERE,   /* w = 1: the paper's full blur */
+	ENGINE_BLUR_OFF,
+};
+
+enum engine_curve {
+	ENGINE_CURVE_SRGB = 0,
+	ENGINE_CURVE_GAMMA,
+};
+
+/* A zeroed struct means the defaults. */
+struct engine_params {
+	enum engine_context_kind context;
+	uint32_t device;          /* index, for ENGINE_CONTEXT_EGL_DEVICE */
+	bool gles;                /* a GLES 3.1 context instead of GL 4.3 core */
+	const char *method;       /* name; NULL: "pursuit" */
+	enum engine_blur blur;
+	bool no_compensation;     /* E = c, B = mix */
+	uint32_t cell;            /* 4 to 64; 0: 8 */
+	uint32_t blur_level;      /* pyramid level of L, 1 to 6; 0: 2 */
+	uint32_t threshold_quarter; /* snapping threshold, quarter pixels; 0: 2 */
+	float display_width_mm;   /* 0: 531 */
+	float viewing_distance_mm; /* 0: 600 */
+	enum engine_curve curve;  /* transfer of the display */
+	float gamma;              /* 1 to 5, with ENGINE_CURVE_GAMMA */
+	bool finish_each_pass;    /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
+};
+
+enum engine_show {
+	ENGINE_SHOW_REAL = 0,   /* E, warped if |phase| > 0.05 */
+	ENGINE_SHOW_IN_BETWEEN, /* B, warped */
+	ENGINE_SHOW_PLAIN,      /* the original: what a missed in-between gets */
+};
+
+struct engine_request {
+	enum engine_show show;
+	double phase; /* -1 to 8, others are clamped, NaN is 0 */
+};
+
+/* Where a displayed frame goes. BGRA8, rows top to bottom, alpha 255. */
+struct engine_image {
+	uint8_t *data; /* caller's memory, stride x height bytes; NULL: leave it in the engine's texture */
+	size_t stride; /* bytes, at least 4 x width, a multiple of 4 */
+};
+
+struct engine_begin_params {
+	uint32_t n;               /* N, 1 to 8, clamped */
+	double last_phase;        /* of the last in-between expected; < 0: (N - 1) / N */
+	uint64_t real_interval_ns; /* T; 0: as the frame says */
+};
+
+#define ENGINE_MAX_PASSES 12
+#define ENGINE_MAX_LEFT_OUT 12
+
+/* What ran for one real frame, from its engine_begin() to the next. */
+struct engine_report {
+	uint64_t frame_id;
+	uint32_t pass_count;
+	struct engine_pass_report {
+		const char *name; /* "analyse", "upload", "pyramid", "compensate", "warp", "ui", "read"; static */
+		uint32_t runs;
+		double ms;        /* GPU time (timer queries), else CPU time with finish_each_pass, else CPU time of the call */
+	} passes[ENGINE_MAX_PASSES];
+	uint32_t left_out_count;
+	struct engine_left_out {
+		const char *name;   /* docs/method.md, 8 */
+		const char *reason;
+	} left_out[ENGINE_MAX_LEFT_OUT];
+	const char *time_source; /* "timer-query", "finish", "cpu" */
+	double total_ms;         /* CPU wall time inside engine_begin and engine_render so far */
+	uint32_t vertices, triangles, snapped, folded, doubtful;
+	uint64_t invalid_pixels;
+	uint64_t bytes_up, bytes_down;
+};
+
+struct engine_info {
+	const char *context;  /* "egl-surfaceless", "egl-device", "osmesa" */
+	const char *renderer; /* GL_RENDERER */
+	const char *version;  /* GL_VERSION */
+	bool software;        /* a CPU renderer */
+};
+
+struct engine;
+
+/* Names and one-line descriptions, NULL-terminated by name. Static. */
+struct engine_method_info {
+	const char *name;
+	const char *description;
+};
+const struct engine_method_info *engine_methods(void);
+
+/* Makes context and engine, compiles what every frame needs. NULL with a sentence. */
+struct engine *engine_create(const struct engine_params *params, struct error *error);
+void engine_destroy(struct engine **engine);
+
+const struct engine_info *engine_get_info(const struct engine *engine);
+
+/*
+ * Takes a real frame: analyses depth and motion, uploads colour and UI. When it
+ * returns the frame's planes are no longer needed. Sizes may change from frame to frame.
+ * 0, or a negative errno with a sentence (-ENOMEM, -EIO: the context is lost; -EINVAL: size beyond the renderer's).
+ */
+int engine_begin(struct engine *engine, const struct frame *frame, const struct engine_begin_params *params,
+                 struct error *error);
+
+/* Size of displayed frames: that of the colour plane of the frame begun; 0 x 0 before the first. */
+void engine_get_size(const struct engine *engine, uint32_t *width, uint32_t *height);
+
+/* Makes one displayed frame of the real frame begun last. With image->data it returns when the pixels are there. */
+int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
+                  struct error *error);
+
+/* What ran since engine_begin(). Owned by the engine, valid until the next call. Waits for timer queries. */
+const struct engine_report *engine_get_report(struct engine *engine);
+
+/* Changes method, blur, compensation or cell from the next engine_begin() on; context and device stay. */
+int engine_set_params(struct engine *engine, const struct engine_params *params, struct error *error);
+
+/* The plan of the frame begun last, as one line of JSON, into text (size bytes); "" without one. Truncates. */
+void engine_print_plan(const struct engine *engine, char *text, size_t size);
+
+#endif
