@@ -26,14 +26,19 @@ struct frame {
 /*
  * Checks every field of a header: counts, roles (at most one of each known
  * role; colour is mandatory), formats that fit their role, sizes, strides,
- * offsets and sizes within `planes_bytes` (no overflow, no overlap with the
- * end), kinds, flags, reserved bytes, finite transfer, near < far. Values that
- * are merely absurd (a NaN matrix, a jitter beyond the picture, times that run
- * backwards) are mended to "unknown" in place. A motion plane with kind NONE or
- * a depth plane with kind NONE is refused. Colour and UI must have equal size.
+ * offsets and sizes within `planes_bytes` (no overflow; all planes together at
+ * most PURSUIT_MAX_FRAME_BYTES, even where they share bytes), kinds, flags,
+ * reserved bytes, finite transfer, near < far. Values that are merely absurd (a
+ * matrix that is not finite, a jitter beyond the picture, times and intervals
+ * that ran backwards and wrapped) are mended to "unknown" in place, and so are
+ * the kind of a plane that is not there and the planes beyond plane_count. A
+ * motion plane with kind NONE or a depth plane with kind NONE is refused.
+ * Colour and UI must have equal size. A plane of an unknown role may have an
+ * unknown format: then only offset, stride and size are checked.
  *
  * 0, or -EINVAL with a sentence "frame 12: planes[1].stride is 7, must be ...";
- * *field (a static string, may be NULL) and *value (may be NULL) name the culprit.
+ * *field (a static string, may be NULL) and *value (may be NULL; of a float its
+ * 32 bits) name the culprit.
  */
 int frame_validate(struct pursuit_frame_header *header, uint64_t planes_bytes, const char **field, uint64_t *value,
                    struct error *error);
@@ -44,7 +49,8 @@ int frame_find_plane(const struct pursuit_frame_header *header, uint32_t role);
 /*
  * Lays out packed planes in a header whose planes[].role, format, width and
  * height are set: fills storage, stride (rows aligned to 64 bytes), offset,
- * size. Returns the bytes that all planes take together.
+ * size. A plane of an unknown format keeps its stride and size. Returns the
+ * bytes that all planes take together, 0 if a size is beyond its limit.
  */
 uint64_t frame_layout(struct pursuit_frame_header *header);
 

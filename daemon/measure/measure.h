@@ -29,8 +29,9 @@ double measure_psnr(const struct picture *a, const struct picture *b);
 /*
  * Structural similarity, Wang et al. 2004: on Rec. 601 luma, 11x11 Gaussian
  * window of standard deviation 1.5, K1 = 0.01, K2 = 0.03, L = 255, mean over
- * the positions where the window fits. Pictures smaller than 11 in a
- * direction: the window is cut to the picture and normalised. NAN only if out of memory.
+ * the positions where the window fits. In a direction where the picture has
+ * n < 11 pixels the window has n taps, centred on the picture, and is
+ * normalised again. Identical pictures give 1. NAN only if out of memory.
  */
 double measure_ssim(const struct picture *a, const struct picture *b);
 
