@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Every setting once: one row carries name, type, default, range, unit and
+ * prose, and help text, configuration file, command line and (later) man page
+ * and live settings come from it. pursuitd uses all rows; verbs of the command
+ * that run an engine themselves (replay, report) use those of OPTION_ENGINE.
+ */
+#ifndef PURSUIT_OPTIONS_H
+#define PURSUIT_OPTIONS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+#include "daemon/engine/engine.h"
+#include "daemon/error.h"
+
+struct settings {
+	/* engine */
+	char method[32];
+	char context[32]; /* auto, egl, egl-device:I, osmesa */
+	bool gles;
+	uint32_t blur;       /* enum engine_blur */
+	bool compensation;   /* default true */
+	uint32_t cell;
+	uint32_t blur_level;
+	double snap_threshold;      /* pixels, a multiple of 1/4 */
+	double display_width_mm;
+	double viewing_distance_mm;
+	double gamma;               /* 0: sRGB */
+	/* output */
+	char present[128];          /* comma-separated list of presenters, tried in turn */
+	uint64_t refresh_numerator; /* --refresh 120, 119.88, 120000/1001 */
+	uint64_t refresh_denominator;
+	/* daemon */
+	char socket[104];           /* "": the default path */
+	char record[512];           /* "": do not record */
+	uint32_t max_clients;
+	uint32_t log_level;         /* 0 error, 1 warning, 2 info, 3 debug */
+};
+
+enum option_type {
+	OPTION_TEXT,
+	OPTION_FLAG,   /* yes or no; on the command line --name, --no-name, --name=yes */
+	OPTION_NUMBER, /* uint32_t within min, max */
+	OPTION_REAL,   /* double within min, max */
+	OPTION_CHOICE, /* uint32_t index into choices */
+	OPTION_RATE,   /* two uint64_t: "120", "119.88", "120000/1001" */
+};
+
+enum option_group {
+	OPTION_ENGINE,
+	OPTION_OUTPUT,
+	OPTION_DAEMON,
+};
+
+struct option_row {
+	const char *name;          /* with dashes, as on the command line */
+	enum option_group group;
+	enum option_type type;
+	size_t offset;             /* in struct settings */
+	size_t size;               /* of the text field */
+	const char *default_value; /* as it would be written */
+	double min, max;
+	const char *unit;          /* "mm", "px", "Hz", "" */
+	const char *const *choices; /* NULL-terminated */
+	const char *help;          /* one or two sentences */
+};
+
+/* The table, ended by a row without name. Static. */
+const struct option_row *option_table(void);
+
+void settings_defaults(struct settings *settings);
+
+/* Sets one by name. 0 or -EINVAL (with "cell: 3 is below 4", unknown names get the nearest one suggested). */
+int settings_set(struct settings *settings, const char *name, const char *value, struct error *error);
+
+/* Writes the present value of a setting as text. -ENOENT for an unknown name. */
+int settings_get(const struct settings *settings, const char *name, char *value, size_t size);
+
+/* Reads a file of `name = value` lines, # comments. Errors name file and line. */
+int settings_load(struct settings *settings, const char *path, struct error *error);
+
+/*
+ * Takes "--name value" or "--name=value" at argv[*index] if `name` is a row of
+ * one of the groups in the mask (1 << group): 1 taken (*index now at the last
+ * argument used), 0 not ours, negative errno with a sentence.
+ */
+int settings_argument(struct settings *settings, unsigned group_mask, int argc, char **argv, int *index,
+                      struct error *error);
+
+/* Help lines of the rows of these groups; the commented default configuration file. */
+void settings_print_help(unsigned group_mask, FILE *out);
+void settings_print_config(FILE *out);
+
+/* The engine's part, as engine_create() wants it. Points into settings (method). */
+int settings_engine_params(const struct settings *settings, struct engine_params *params, struct error *error);
+
+#endif

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The pacer: which picture belongs to which vblank. Pure arithmetic; time is
+ * passed in, never read; knows no GL, no socket and no clock. One thread.
+ *
+ * Vblank k of a display that runs at numerator / denominator Hz is at
+ *   epoch_ns + k x 1e9 x denominator / numerator, rounded down,
+ * an absolute grid that does not drift (8,333,333 ns and the rest, not 8 ms).
+ *
+ * phase = (target vblank - real frame's time - display delay) / T. The display
+ * delay is one constant that the pacer learns, so that a steady client gets a
+ * steady phase and the first showing of a real frame lies near phase 0.
+ */
+#ifndef PURSUIT_PACER_H
+#define PURSUIT_PACER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define PACER_HISTORY 32u
+/* A real frame's first showing is plain up to this |phase|. */
+#define PACER_PLAIN_PHASE 0.05
+
+struct pacer_params {
+	uint64_t refresh_numerator;   /* Hz = numerator / denominator, 1 to 1000 Hz */
+	uint64_t refresh_denominator;
+	uint64_t epoch_ns;            /* of vblank 0 */
+	bool fixed_delay;             /* replay: the display delay is delay_ns and is not learned */
+	int64_t delay_ns;
+	double max_phase;             /* beyond it nothing is extrapolated; 0: 2 */
+};
+
+/* The real frame that the pacer was told of last. */
+struct pacer_frame {
+	uint64_t frame_id;
+	uint64_t time_ns;     /* the moment that it depicts */
+	uint64_t interval_ns; /* as the client declares, 0 unknown */
+	uint64_t intake_ns;   /* when the daemon saw it */
+};
+
+enum pacer_show {
+	PACER_NOTHING = 0, /* no real frame yet */
+	PACER_REAL,        /* first showing of the newest real frame */
+	PACER_IN_BETWEEN,  /* extrapolated to `phase` */
+	PACER_REPEAT,      /* the same picture as the vblank before: the stream pauses, or display at most as fast as stream */
+};
+
+struct pacer_decision {
+	enum pacer_show show;
+	uint64_t frame_id;
+	uint64_t target_ns;
+	double phase;        /* of target_ns; for PACER_REAL 0 if |phase| <= PACER_PLAIN_PHASE */
+	uint32_t n;          /* vblanks that this real frame is expected to fill, 1 to 8 */
+	double last_phase;   /* of its last expected in-between */
+	uint64_t interval_ns; /* T as the pacer knows it; 0 unknown */
+};
+
+struct pacer {
+	struct pacer_params params;
+	struct pacer_frame frame;      /* newest */
+	bool has_frame, frame_is_new;
+	uint64_t shown_frame_id;
+	uint64_t interval_ns;          /* T, smoothed over history; 0 unknown */
+	int64_t delay_ns;              /* display delay */
+	uint64_t intervals[PACER_HISTORY];
+	int64_t delays[PACER_HISTORY];
+	uint32_t interval_count, delay_count;
+	uint64_t first_vblank;         /* of the newest real frame's first showing */
+	uint64_t reserved[8];
+};
+
+void pacer_init(struct pacer *pacer, const struct pacer_params *params);
+
+/* Time of vblank k, and the first vblank at or after a time. Exact for 2^63 ns. */
+uint64_t pacer_vblank_time(const struct pacer *pacer, uint64_t vblank);
+uint64_t pacer_vblank_at_or_after(const struct pacer *pacer, uint64_t time_ns);
+
+/* A newer real frame has arrived; it replaces an older one that was not shown yet (newest wins). */
+void pacer_add_frame(struct pacer *pacer, const struct pacer_frame *frame);
+
+/*
+ * What vblank `vblank` shows. Call once per vblank, in rising order; vblanks
+ * may be skipped (they were missed). Changes only the pacer.
+ */
+struct pacer_decision pacer_decide(struct pacer *pacer, uint64_t vblank);
+
+/* The decision could not be kept (the picture came too late): what was to be shown was not. */
+void pacer_missed(struct pacer *pacer, const struct pacer_decision *decision);
+
+#endif
