@@ -10,6 +10,7 @@
 #define PURSUIT_RECORDING_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "daemon/error.h"
@@ -21,13 +22,17 @@
 struct recording_writer;
 
 struct recording_writer_params {
-	const char *path; /* created or replaced; ignored if fd >= 0 */
-	int fd;           /* an open file (taken over), or -1 */
+	const char *path; /* created or replaced; with a fd only its name in messages, may be NULL */
+	int fd;           /* > 0: an open file, taken over even if create fails; otherwise path counts */
 	int level;        /* zstd level, 0: 3; negative levels are faster */
 	const char *info; /* text of the INFO chunk, key=value lines; may be NULL */
 };
 
-/* Creates the file and writes header and INFO. NULL with a sentence (disk full, permission, ...). */
+/*
+ * Creates the file and writes header and INFO. A file size limit (RLIMIT_FSIZE)
+ * is met like a full disk if the program ignores or blocks SIGXFSZ. NULL with a sentence
+ * (disk full, permission, ...).
+ */
 struct recording_writer *recording_writer_create(const struct recording_writer_params *params, struct error *error);
 
 /*
@@ -36,10 +41,27 @@ struct recording_writer *recording_writer_create(const struct recording_writer_p
  * is cut back to the last whole chunk and stays readable, and later calls fail alike.
  */
 int recording_writer_frame(struct recording_writer *writer, const struct frame *frame, uint64_t time_ns,
-                           struct error *error);
+						   struct error *error);
+
+/*
+ * The same in two steps, so that one thread can copy a frame and another write
+ * it: recording_pack() fills recording_packed_bytes() bytes (header, then the
+ * planes laid out anew; any alignment). Frames are validated before.
+ */
+uint64_t recording_packed_bytes(const struct frame *frame);
+void recording_pack(const struct frame *frame, uint8_t *packed);
+int recording_writer_packed(struct recording_writer *writer, const uint8_t *packed, uint64_t bytes, uint64_t time_ns,
+							struct error *error);
+
+/* zstd level of the frames from now on, as in the params. */
+void recording_writer_set_level(struct recording_writer *writer, int level);
+
 int recording_writer_settings(struct recording_writer *writer, const char *text, uint64_t time_ns, struct error *error);
 
-/* Writes END, syncs and closes; clears *writer. NULL accepted. 0 or a negative errno with a sentence. */
+/*
+ * Writes END (unless a write failed before), syncs and closes; clears *writer.
+ * NULL accepted. 0 or a negative errno with a sentence.
+ */
 int recording_writer_close(struct recording_writer **writer, struct error *error);
 
 /* Bytes in the file so far, frames written. */
@@ -51,17 +73,20 @@ struct recording_reader;
 
 struct recording_reader_params {
 	const char *path;
-	uint64_t memory_limit; /* bytes for one decoded frame; 0: PURSUIT_MAX_FRAME_BYTES */
+	uint64_t memory_limit; /* bytes for the planes of one decoded frame; 0: PURSUIT_MAX_FRAME_BYTES */
 };
 
-/* What a scan of the whole file found. */
+/*
+ * What a scan of the whole file found. A payload is checked only when it is
+ * read; damage that recording_reader_frame() meets is counted here then, once.
+ */
 struct recording_summary {
 	uint64_t frames;
-	uint64_t damaged_chunks; /* skipped: a checksum or a header was wrong */
+	uint64_t damaged_chunks;      /* skipped: a checksum or a header was wrong */
 	uint64_t first_damage_offset; /* in the file; only if damaged_chunks > 0 */
-	bool closed;    /* END was found: the recording is complete */
-	bool truncated; /* the last chunk was cut off */
-	char damage[256]; /* a sentence about the first damage, "" if none */
+	bool closed;                  /* END was found: the recording is complete */
+	bool truncated;               /* the last chunk was cut off */
+	char damage[256];             /* a sentence about the first damage or the cut, "" if none */
 };
 
 /* Opens and scans headers (cheap: payloads are checked when read). NULL with a sentence. */
@@ -71,15 +96,19 @@ void recording_reader_destroy(struct recording_reader **reader);
 const struct recording_summary *recording_reader_summary(const struct recording_reader *reader);
 /* The INFO text, "" if none. Owned by the reader. */
 const char *recording_reader_info(const struct recording_reader *reader);
+/* The value of `key` in INFO text, without its line end; false if there is none or it does not fit. */
+bool recording_info_value(const char *info, const char *key, char *value, size_t size);
 uint64_t recording_reader_frame_count(const struct recording_reader *reader);
 
 /*
  * Decodes frame `index` (0 up). The frame and its planes belong to the reader
  * and are valid until the next call with the same `slot` (0 to 3: so that a
- * caller can hold several frames at once). 0; -EBADMSG with a sentence if the
- * chunk is damaged (go on with the next); -ENOMEM, -EIO. time_ns may be NULL.
+ * caller can hold several frames at once). Planes lie at multiples of 64 bytes.
+ * 0; -EBADMSG with a sentence if the chunk is damaged (go on with the next);
+ * -ENOMEM if it is beyond the memory limit; -EIO; -EINVAL for an index or a
+ * slot that there is not. time_ns, of the chunk, may be NULL.
  */
 int recording_reader_frame(struct recording_reader *reader, uint64_t index, unsigned slot, struct frame *frame,
-                           uint64_t *time_ns, struct error *error);
+						   uint64_t *time_ns, struct error *error);
 
 #endif
