@@ -38,7 +38,9 @@ struct settings {
 	/* daemon */
 	char socket[104];           /* "": the default path */
 	char record[512];           /* "": do not record */
+	char stats[512];            /* "": no statistics file at the end */
 	uint32_t max_clients;
+	uint32_t max_frame_mb;      /* largest slot that a client may offer */
 	uint32_t log_level;         /* 0 error, 1 warning, 2 info, 3 debug */
 };
 
@@ -78,10 +80,13 @@ void settings_defaults(struct settings *settings);
 /* Sets one by name. 0 or -EINVAL (with "cell: 3 is below 4", unknown names get the nearest one suggested). */
 int settings_set(struct settings *settings, const char *name, const char *value, struct error *error);
 
+/* The row name nearest to an unknown one (two letters apart at most), NULL if none is near. Static. */
+const char *settings_nearest(const char *name);
+
 /* Writes the present value of a setting as text. -ENOENT for an unknown name. */
 int settings_get(const struct settings *settings, const char *name, char *value, size_t size);
 
-/* Reads a file of `name = value` lines, # comments. Errors name file and line. */
+/* Reads a file of `name = value` lines; lines that start with # are comments. Errors name file and line. */
 int settings_load(struct settings *settings, const char *path, struct error *error);
 
 /*

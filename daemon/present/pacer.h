@@ -11,7 +11,16 @@
  *
  * phase = (target vblank - real frame's time - display delay) / T. The display
  * delay is one constant that the pacer learns, so that a steady client gets a
- * steady phase and the first showing of a real frame lies near phase 0.
+ * steady phase and the first showing of a real frame lies near phase 0: it
+ * follows the median of (first vblank - frame's time) over the last frames, so
+ * slowly (2 ms a second) that no motion is seen to speed up, and faster only
+ * when it is wrong by more than a vblank.
+ *
+ * N is predicted: the next real frame's time is this one's + T, and it is
+ * expected at the first vblank that frames of that age could reach so far. So
+ * N alternates as it must where the rates have no whole ratio (45 on 120 Hz:
+ * 3, 3, 2). A stream at least as fast as the display passes through: no
+ * extrapolation, phase 0, N = 1.
  */
 #ifndef PURSUIT_PACER_H
 #define PURSUIT_PACER_H
@@ -61,14 +70,15 @@ struct pacer {
 	struct pacer_params params;
 	struct pacer_frame frame;      /* newest */
 	bool has_frame, frame_is_new;
-	uint64_t shown_frame_id;
 	uint64_t interval_ns;          /* T, smoothed over history; 0 unknown */
 	int64_t delay_ns;              /* display delay */
 	uint64_t intervals[PACER_HISTORY];
-	int64_t delays[PACER_HISTORY];
-	uint32_t interval_count, delay_count;
+	int64_t delays[PACER_HISTORY]; /* first vblank - frame's time */
+	uint32_t interval_count, delay_count; /* ever; the newest are kept */
 	uint64_t first_vblank;         /* of the newest real frame's first showing */
-	uint64_t reserved[8];
+	uint64_t tracked_ns;           /* when delay_ns was last moved */
+	uint32_t n;                    /* of the newest real frame, once shown */
+	double last_phase;
 };
 
 void pacer_init(struct pacer *pacer, const struct pacer_params *params);
@@ -77,16 +87,29 @@ void pacer_init(struct pacer *pacer, const struct pacer_params *params);
 uint64_t pacer_vblank_time(const struct pacer *pacer, uint64_t vblank);
 uint64_t pacer_vblank_at_or_after(const struct pacer *pacer, uint64_t time_ns);
 
-/* A newer real frame has arrived; it replaces an older one that was not shown yet (newest wins). */
+/*
+ * A newer real frame has arrived; it replaces an older one that was not shown yet (newest wins).
+ * A time_ns of 0 stands for intake_ns.
+ */
 void pacer_add_frame(struct pacer *pacer, const struct pacer_frame *frame);
 
 /*
  * What vblank `vblank` shows. Call once per vblank, in rising order; vblanks
- * may be skipped (they were missed). Changes only the pacer.
+ * may be skipped (they were missed), and vblanks that were decided but are not
+ * over may be decided again after pacer_add_frame(). Changes only the pacer.
  */
 struct pacer_decision pacer_decide(struct pacer *pacer, uint64_t vblank);
 
-/* The decision could not be kept (the picture came too late): what was to be shown was not. */
+/*
+ * The vblank at which the next real frame is expected to be shown first, if it
+ * keeps its interval; 0: unknown.
+ */
+uint64_t pacer_next_real_vblank(const struct pacer *pacer);
+
+/*
+ * The decision could not be kept (the picture came too late): what was to be shown was not. A real frame is
+ * then decided again for a later vblank.
+ */
 void pacer_missed(struct pacer *pacer, const struct pacer_decision *decision);
 
 #endif

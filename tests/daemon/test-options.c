@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* The settings: the table itself, text in and out, files, command lines. */
+
+#include <errno.h>
+#include <unistd.h>
+
+#include "daemon/options.h"
+#include "tests/test.h"
+
+static void test_table(void)
+{
+	struct settings settings;
+	settings_defaults(&settings);
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char value[1024];
+		struct error error = {""};
+		CHECK(row->help && *row->help);
+		CHECK(strspn(row->name, "abcdefghijklmnopqrstuvwxyz-") == strlen(row->name));
+		CHECK_INT(settings_get(&settings, row->name, value, sizeof(value)), 0);
+		CHECK_STRING(value, row->default_value);
+		CHECK_INT(settings_set(&settings, row->name, row->default_value, &error), 0);
+		for (const struct option_row *other = row + 1; other->name; other++)
+			CHECK(strcmp(row->name, other->name) != 0);
+		if (row->type != OPTION_NUMBER && row->type != OPTION_REAL && row->type != OPTION_RATE)
+			continue;
+		char text[32];
+		snprintf(text, sizeof(text), "%g", row->min - 1);
+		CHECK_INT(settings_set(&settings, row->name, text, &error), -EINVAL);
+		CHECK(strstr(error.text, row->name) == error.text);
+		snprintf(text, sizeof(text), "%g", row->max + 1);
+		CHECK_INT(settings_set(&settings, row->name, text, &error), -EINVAL);
+		CHECK(strstr(error.text, row->name) == error.text);
+		CHECK(strstr(error.text, text) || row->type == OPTION_RATE);
+	}
+}
+
+static void expect(const char *name, const char *value, int result, const char *sentence)
+{
+	struct settings settings;
+	struct error error = {""};
+	settings_defaults(&settings);
+	CHECK_INT(settings_set(&settings, name, value, &error), result);
+	CHECK_STRING(error.text, sentence);
+}
+
+static void test_refusals(void)
+{
+	expect("cell", "3", -EINVAL, "cell: 3 is below 4 px");
+	expect("cell", "8.5", -EINVAL, "cell: \"8.5\" is not a whole number");
+	expect("cell", "", -EINVAL, "cell: \"\" is not a whole number");
+	expect("cell", "99999999999999999999", -EINVAL, "cell: 99999999999999999999 is above 64 px");
+	expect("cel", "8", -EINVAL, "cel: there is no such setting; did you mean cell?");
+	expect("zzzzzzzz", "8", -EINVAL, "zzzzzzzz: there is no such setting");
+	expect("gamma", "nan", -EINVAL, "gamma: \"nan\" is not a number");
+	expect("gamma", "0.5", -EINVAL, "gamma: 0.5 is neither 0 (sRGB) nor 1 to 5");
+	expect("snap-threshold", "0.3", -EINVAL, "snap-threshold: 0.3 is not a multiple of 0.25");
+	expect("blur", "some", -EINVAL, "blur: \"some\" is none of doubtful, everywhere, off");
+	expect("gles", "maybe", -EINVAL, "gles: \"maybe\" is neither yes nor no");
+	expect("refresh", "0", -EINVAL, "refresh: 0 is below 1 Hz");
+	expect("refresh", "120/0", -EINVAL, "refresh: \"120/0\" is not a rate like 120, 119.88 or 120000/1001");
+	expect("refresh", "12a", -EINVAL, "refresh: \"12a\" is not a rate like 120, 119.88 or 120000/1001");
+	expect("context", "glx", -EINVAL, "context: \"glx\" is none of auto, egl, egl-device:INDEX, osmesa");
+	expect("context", "egl-device:x", -EINVAL, "context: \"egl-device:x\": the index of the device must be 0 to 255");
+	expect("method", "", -EINVAL, "method: is empty");
+	expect("context", "egl-device:2", 0, "");
+}
+
+static void test_rates(void)
+{
+	static const struct {
+		const char *text;
+		unsigned long long numerator, denominator;
+		const char *printed;
+	} rates[] = {
+		{"120", 120, 1, "120"},
+		{"119.88", 2997, 25, "119.880000"},
+		{"120000/1001", 120000, 1001, "120000/1001"},
+		{"143.9", 1439, 10, "143.900000"},
+		{"60.000", 60, 1, "60"},
+		{"240/2", 120, 1, "120"},
+	};
+	for (size_t i = 0; i < sizeof(rates) / sizeof(rates[0]); i++) {
+		struct settings settings, again;
+		struct error error = {""};
+		char value[64];
+		settings_defaults(&settings);
+		again = settings;
+		CHECK_INT(settings_set(&settings, "refresh", rates[i].text, &error), 0);
+		CHECK_INT(settings.refresh_numerator, rates[i].numerator);
+		CHECK_INT(settings.refresh_denominator, rates[i].denominator);
+		settings_get(&settings, "refresh", value, sizeof(value));
+		CHECK_STRING(value, rates[i].printed);
+		CHECK_INT(settings_set(&again, "refresh", value, &error), 0);
+		CHECK(memcmp(&settings, &again, sizeof(settings)) == 0);
+	}
+}
+
+/* Writes a temporary file; its name lives until the next call. */
+static const char *file_with(const char *text)
+{
+	static char path[64];
+	snprintf(path, sizeof(path), "/tmp/pursuit-options-XXXXXX");
+	const int fd = mkstemp(path);
+	CHECK(fd >= 0 && write(fd, text, strlen(text)) == (ssize_t)strlen(text));
+	close(fd);
+	return path;
+}
+
+static void test_config_round_trip(void)
+{
+	struct settings defaults, loaded;
+	struct error error = {""};
+	char *text = NULL;
+	size_t size = 0, rows = 0;
+	FILE *out = open_memstream(&text, &size);
+	settings_print_config(out);
+	fclose(out);
+	settings_defaults(&defaults);
+	memset(&loaded, 0, sizeof(loaded));
+	for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+		if (line[0] != '#' || line[1] == ' ')
+			continue;
+		const char *path = file_with(line + 1); /* a commented default, uncommented */
+		CHECK_INT(settings_load(&loaded, path, &error), 0);
+		unlink(path);
+		rows++;
+	}
+	free(text);
+	CHECK(rows > 15);
+	CHECK(memcmp(&defaults, &loaded, sizeof(defaults)) == 0);
+}
+
+static void test_config_errors(void)
+{
+	struct settings settings;
+	struct error error = {""};
+	char want[600];
+	settings_defaults(&settings);
+	const char *path = file_with("# a comment\n\n  cell = 16  \n\tgles=yes\nmethod = hold\nblur-level = 9\n");
+	CHECK_INT(settings_load(&settings, path, &error), -EINVAL);
+	snprintf(want, sizeof(want), "%s:6: blur-level: 9 is above 6", path);
+	CHECK_STRING(error.text, want);
+	CHECK_INT(settings.cell, 16);
+	CHECK(settings.gles);
+	CHECK_STRING(settings.method, "hold");
+	unlink(path);
+	path = file_with("cell 16\n");
+	CHECK_INT(settings_load(&settings, path, &error), -EINVAL);
+	snprintf(want, sizeof(want), "%s:1: \"cell 16\" is not of the form name = value", path);
+	CHECK_STRING(error.text, want);
+	unlink(path);
+	CHECK_INT(settings_load(&settings, "/nonexistent/pursuit.conf", &error), -ENOENT);
+	CHECK_STRING(error.text, "/nonexistent/pursuit.conf: No such file or directory");
+	CHECK(settings_load(&settings, "/tmp", &error) < 0);
+}
+
+static int take(struct settings *settings, unsigned mask, char *a, char *b, int *used, struct error *error)
+{
+	char *argv[] = {(char[]){"x"}, a, b, NULL};
+	int index = 1;
+	const int result = settings_argument(settings, mask, b ? 3 : 2, argv, &index, error);
+	*used = index;
+	return result;
+}
+
+static void test_arguments(void)
+{
+	struct settings settings;
+	struct error error = {""};
+	int used;
+	const unsigned engine = 1u << OPTION_ENGINE;
+	settings_defaults(&settings);
+	CHECK_INT(take(&settings, engine, (char[]){"--cell"}, (char[]){"12"}, &used, &error), 1);
+	CHECK_INT(used, 2);
+	CHECK_INT(settings.cell, 12);
+	CHECK_INT(take(&settings, engine, (char[]){"--cell=20"}, NULL, &used, &error), 1);
+	CHECK_INT(used, 1);
+	CHECK_INT(settings.cell, 20);
+	CHECK_INT(take(&settings, engine, (char[]){"--no-compensation"}, NULL, &used, &error), 1);
+	CHECK(!settings.compensation);
+	CHECK_INT(take(&settings, engine, (char[]){"--compensation=yes"}, NULL, &used, &error), 1);
+	CHECK(settings.compensation);
+	CHECK_INT(take(&settings, engine, (char[]){"--gles"}, (char[]){"no"}, &used, &error), 1);
+	CHECK(settings.gles);
+	CHECK_INT(used, 1);
+	CHECK_INT(take(&settings, engine, (char[]){"--refresh"}, (char[]){"60"}, &used, &error), 0);
+	CHECK_INT(take(&settings, engine, (char[]){"--no-cell"}, NULL, &used, &error), 0);
+	CHECK_INT(take(&settings, engine, (char[]){"scene"}, NULL, &used, &error), 0);
+	CHECK_INT(take(&settings, engine, (char[]){"--cell"}, NULL, &used, &error), -EINVAL);
+	CHECK_STRING(error.text, "--cell needs a value");
+	CHECK_INT(take(&settings, engine, (char[]){"--no-gles=yes"}, NULL, &used, &error), -EINVAL);
+}
+
+static void test_engine_params(void)
+{
+	struct settings settings;
+	struct engine_params params;
+	struct error error = {""};
+	settings_defaults(&settings);
+	CHECK_INT(settings_engine_params(&settings, &params, &error), 0);
+	CHECK_STRING(params.method, "pursuit");
+	CHECK_INT(params.context, ENGINE_CONTEXT_AUTO);
+	CHECK_INT(params.threshold_quarter, 2);
+	CHECK_INT(params.cell, 8);
+	CHECK_INT(params.curve, ENGINE_CURVE_SRGB);
+	CHECK(!params.no_compensation);
+	CHECK_INT(settings_set(&settings, "context", "egl-device:3", &error), 0);
+	CHECK_INT(settings_set(&settings, "gamma", "2.2", &error), 0);
+	CHECK_INT(settings_engine_params(&settings, &params, &error), 0);
+	CHECK_INT(params.context, ENGINE_CONTEXT_EGL_DEVICE);
+	CHECK_INT(params.device, 3);
+	CHECK_INT(params.curve, ENGINE_CURVE_GAMMA);
+}
+
+static void test_help(void)
+{
+	char *text = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+	settings_print_help(1u << OPTION_ENGINE, out);
+	fclose(out);
+	CHECK(strstr(text, "--cell NUMBER") && strstr(text, "--[no-]gles") && strstr(text, "4 to 64 px"));
+	CHECK(!strstr(text, "--refresh"));
+	free(text);
+}
+
+int main(void)
+{
+	RUN(test_table);
+	RUN(test_refusals);
+	RUN(test_rates);
+	RUN(test_config_round_trip);
+	RUN(test_config_errors);
+	RUN(test_arguments);
+	RUN(test_engine_params);
+	RUN(test_help);
+	return test_result();
+}
