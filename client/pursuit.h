@@ -32,7 +32,7 @@
  * signal handler, never changes the GL state that the caller can see, and
  * never prints.
  *
- * Errors: functions that return int give 0 or a negative errno.
+ * NULL streams and frames are accepted everywhere and do nothing.
  * Strings are UTF-8. Sizes are pixels, times CLOCK_MONOTONIC nanoseconds.
  */
 #ifndef PURSUIT_H
@@ -71,13 +71,13 @@ enum pursuit_depth_format {
 };
 
 enum pursuit_depth_kind {
-	PURSUIT_DEPTH_IS_DEVICE = 0,  /* 0 at near, 1 at far */
+	PURSUIT_DEPTH_IS_DEVICE = 0,   /* 0 at near, 1 at far */
 	PURSUIT_DEPTH_IS_REVERSED = 1, /* 1 at near, 0 at far */
-	PURSUIT_DEPTH_IS_LINEAR = 2   /* a distance; set near_distance and far_distance */
+	PURSUIT_DEPTH_IS_LINEAR = 2    /* a distance; only PURSUIT_DEPTH_FLOAT32, with near_ and far_distance set */
 };
 
 enum pursuit_motion_format {
-	PURSUIT_MOTION_ABSENT = 0, /* every in-between repeats the real frame */
+	PURSUIT_MOTION_ABSENT = 0,   /* every in-between repeats the real frame */
 	PURSUIT_MOTION_FLOAT16 = 32, /* two halves a pixel: x, y */
 	PURSUIT_MOTION_FLOAT32 = 33  /* two floats a pixel: x, y */
 };
@@ -125,8 +125,8 @@ struct pursuit_stream_params {
 	enum pursuit_ui_format ui_format; /* the UI plane has width x height */
 	enum pursuit_object_id_format object_id_format;
 	uint32_t slot_count;     /* 3 to 8; 0: 4 */
-	const char *socket_path; /* NULL: $PURSUIT_SOCKET, else $XDG_RUNTIME_DIR/pursuit/socket,
-	                            else /run/pursuit/socket. Copied. */
+	const char *socket_path; /* NULL: $PURSUIT_SOCKET if set; else $XDG_RUNTIME_DIR/pursuit/socket, and
+								where no daemon answers there, /run/pursuit/socket. Copied. */
 	const char *name;        /* what the daemon calls this stream; NULL: the program's name. Copied. */
 };
 
@@ -157,8 +157,9 @@ struct pursuit_frame {
 	struct pursuit_plane_memory ui;
 	struct pursuit_plane_memory object_id;
 	uint64_t time_ns;            /* the moment that the picture depicts; 0: the moment of submit */
-	uint64_t real_interval_ns;   /* since the frame before; 0: taken from the times */
-	uint64_t motion_interval_ns; /* that the motion spans; 0: the real interval */
+	uint64_t real_interval_ns;   /* since the frame submitted before; 0: taken from the times */
+	uint64_t motion_interval_ns; /* that the motion spans; 0: the real interval. Set it where they differ,
+									as after a rendered frame that was not submitted */
 	uint32_t flags;              /* enum pursuit_frame_flag, or-ed */
 	float jitter_x;              /* pixels, +x right */
 	float jitter_y;              /* pixels, +y down */
@@ -175,14 +176,14 @@ enum pursuit_state {
 
 struct pursuit_status {
 	enum pursuit_state state;
-	uint64_t submitted; /* frames given to pursuit_submit() */
-	uint64_t published; /* of these, published to a daemon */
-	uint64_t replaced;  /* of these, replaced by a newer one before the daemon took them */
-	uint64_t no_slot;   /* pursuit_acquire() found no free slot */
-	uint64_t attaches;  /* how often a daemon accepted the stream */
+	uint64_t submitted;    /* frames given to pursuit_submit() and pursuit_gl_submit() */
+	uint64_t published;    /* of these, published to a daemon */
+	uint64_t replaced;     /* of these, replaced by a newer one before the daemon took them */
+	uint64_t no_slot;      /* pursuit_acquire() found no free slot */
+	uint64_t attaches;     /* how often a daemon accepted the stream */
 	uint64_t bytes_copied; /* by the shim itself: GL read-back into slots */
-	double refresh_hz;  /* of the display; 0: unknown */
-	char message[192];  /* why the state is what it is, for a person */
+	double refresh_hz;     /* of the display; 0: unknown */
+	char message[192];     /* why the state is what it is, for a person */
 };
 
 enum pursuit_shown {
@@ -214,18 +215,22 @@ PURSUIT_API const char *pursuit_version(void);
 
 /*
  * Opens a stream and begins to attach. Returns NULL with errno: EINVAL (a
- * parameter is out of range), ENOMEM, EMFILE. A missing daemon is no error.
+ * parameter is out of range), ENOMEM. A missing daemon is no error, nor is a
+ * lack of file descriptors: pursuit_get_status() says so, and it is tried again.
  * The caller owns the stream and gives it to pursuit_close().
  */
 PURSUIT_API struct pursuit_stream *pursuit_open(const struct pursuit_stream_params *params);
 
-/* Closes and clears *stream. NULL and a pointer to NULL are accepted. */
+/* Closes and clears *stream; frames still acquired are gone with it. NULL and a pointer to NULL are accepted. */
 PURSUIT_API void pursuit_close(struct pursuit_stream **stream);
 
 /*
- * A slot to fill, or NULL when none is free (more than the stream has are
- * acquired at once) - then skip this frame. Works without a daemon, so that a
- * caller needs no second path.
+ * A slot to fill, or NULL when none is free: slot_count - 2 frames can be
+ * acquired at once - then skip this frame. Works without a daemon, so that a
+ * caller needs no second path. The planes hold an earlier frame's pixels or
+ * zeros. A frame stays valid memory until it is submitted or cancelled, even
+ * if the daemon dies meanwhile; it is published only to the daemon that was
+ * attached when it was acquired.
  */
 PURSUIT_API struct pursuit_frame *pursuit_acquire(struct pursuit_stream *stream);
 
@@ -260,39 +265,65 @@ PURSUIT_API void pursuit_update(struct pursuit_stream *stream);
 /* Looks up a GL or GLES function of the caller's current context by name. */
 typedef void *(*pursuit_gl_lookup)(const char *name);
 
-/* GL texture names (2D, level 0) that hold the frame; 0 where there is none. */
+/*
+ * GL texture names (2D, single-sampled, level 0, at least as large as their
+ * plane) that hold the frame; 0 where there is none: a plane of the stream
+ * without a texture is published as zeros, and motion as invalid.
+ *
+ * On desktop GL the texture's format may differ from the plane's; GL converts.
+ * GLES converts less: colour and UI of 8 bits need RGBA8, RGB10A2 needs
+ * RGB10_A2, RGBA16F, depth and motion need float or half float textures.
+ */
 struct pursuit_gl_textures {
 	uint32_t color;
-	uint32_t depth; /* a depth texture, or a one-channel float one (always so on GLES) */
-	uint32_t motion;
+	uint32_t depth;  /* a depth texture, or a one-channel float one (always so on GLES) */
+	uint32_t motion; /* float, x in R, y in G */
 	uint32_t ui;
-	uint32_t object_id;
-	int bottom_up; /* 1: row 0 is the bottom of the picture, as GL renders; rows are turned while copied */
-	int motion_y_up; /* 1: the motion's y points up; its sign is turned while copied */
+	uint32_t object_id; /* unsigned integer, in R */
+	int bottom_up;      /* 1: row 0 is the bottom of the picture, as GL renders; rows are turned while copied */
+	int motion_y_up;    /* 1: the motion's y points up; its sign is turned while copied */
 };
 
 struct pursuit_gl;
 
 /*
  * Makes a read-back helper for `stream` in the current context (GL 3.2 or GLES
- * 3.0 and later). NULL with errno ENOTSUP (a function is missing, or a plane's
- * format cannot be read back on this context), ENOMEM. Same thread as the
- * stream; destroyed in the same context before the stream is closed.
+ * 3.0 and later). NULL with errno ENOTSUP (a function is missing, or float
+ * planes cannot be read back on this context), ENOMEM, EINVAL. Same thread as
+ * the stream; destroyed in the same context before the stream is closed.
  */
 PURSUIT_API struct pursuit_gl *pursuit_gl_create(struct pursuit_stream *stream, pursuit_gl_lookup lookup);
 PURSUIT_API void pursuit_gl_destroy(struct pursuit_gl **gl);
 
 /*
- * Starts the read-back of the frame just rendered and publishes the one that
- * was started by the call before (pixel buffers, one frame deep), so no call
- * waits for rendering. `frame` gives times, flags and matrices; its planes are
- * ignored. All GL state that it changes is restored. Returns the id that the
- * frame of the call before was published as, 0 if none was.
+ * Publishes the newest read-back whose rendering is done, then starts that of
+ * the frame just rendered. No call waits for rendering: a fence that is not
+ * signalled yet is asked again in the next call. Up to three read-backs are
+ * under way, as many frames as drivers queue; where all three are, this frame
+ * is dropped. Of several that are done at once only the newest is copied, as
+ * the daemon would take no other. So a frame leaves with the call after its
+ * own where the GPU keeps up - or earlier, with pursuit_gl_update().
+ *
+ * `frame` gives times, flags and matrices; its planes are ignored. All GL
+ * state that it changes is restored. With no daemon attached nothing is read.
+ * Returns the id of the frame that this call published, 0 if none; ids count
+ * the calls, so a frame that was dropped leaves a gap. If a texture cannot be
+ * read back, the message of pursuit_get_status() says which and why.
+ *
+ * Costs: the calls that start the read-back, and one copy of each plane. On a
+ * software renderer starting a read-back renders and reads at once.
  */
 PURSUIT_API uint64_t pursuit_gl_submit(struct pursuit_gl *gl, const struct pursuit_gl_textures *textures,
-                                       const struct pursuit_frame *frame);
+									   const struct pursuit_frame *frame);
 
-/* Publishes the frame that is still under way; waits for its rendering. 0 or its id. */
+/*
+ * Publishes the newest read-back whose rendering is done, without waiting, so
+ * that it does not wait for the next pursuit_gl_submit(): call it where
+ * convenient between frames. Returns its id, 0 if none is done.
+ */
+PURSUIT_API uint64_t pursuit_gl_update(struct pursuit_gl *gl);
+
+/* Publishes the newest frame that is under way; WAITS for its rendering, a second at most. Its id or 0. */
 PURSUIT_API uint64_t pursuit_gl_flush(struct pursuit_gl *gl);
 
 #ifdef __cplusplus
