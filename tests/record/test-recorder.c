@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include <errno.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "daemon/record/recorder.h"
+#include "tests/record/sample.h"
+#include "tests/test.h"
+
+#define FRAMES 100u
+
+static void test_all_frames_in_order(void)
+{
+	const struct recorder_params params = {.writer = {.path = sample_path("a.pursuit"), .info = "stream=live\n"}};
+	struct error error = {""};
+	struct recorder *recorder = recorder_create(&params, &error);
+	struct recorder_stats stats;
+	CHECK(recorder != NULL);
+	for (unsigned i = 1; i <= FRAMES; i++) {
+		struct sample sample;
+		sample_init(&sample, i, 16 + i % 7, 9);
+		CHECK(recorder_push(recorder, &sample.frame, i));
+		if (i == 50)
+			CHECK(recorder_settings(recorder, "method=grid\n", i));
+		sample_finish(&sample); /* the copy is what counts from here */
+	}
+	recorder_stats(recorder, &stats);
+	CHECK_INT(stats.frames_dropped, 0);
+	CHECK(!stats.failed);
+	CHECK_INT(recorder_destroy(&recorder, &stats, &error), 0);
+	CHECK(recorder == NULL);
+	CHECK_INT(stats.frames_written, FRAMES);
+	CHECK_INT(stats.queued_frames, 0);
+	CHECK_INT(stats.queued_bytes, 0);
+	CHECK_STRING(stats.text, "");
+	CHECK_INT(recorder_destroy(&recorder, &stats, &error), 0);
+
+	struct recording_reader *reader =
+		recording_reader_create(&(struct recording_reader_params){.path = sample_path("a.pursuit")}, &error);
+	CHECK_INT(recording_reader_frame_count(reader), FRAMES);
+	CHECK(recording_reader_summary(reader)->closed);
+	for (unsigned i = 1; i <= FRAMES; i++) {
+		struct frame frame;
+		uint64_t time_ns = 0;
+		struct sample sample;
+		sample_init(&sample, i, 16 + i % 7, 9);
+		CHECK_INT(recording_reader_frame(reader, i - 1, 0, &frame, &time_ns, &error), 0);
+		CHECK(sample_equal(&frame, &sample.frame));
+		CHECK_INT(time_ns, i);
+		sample_finish(&sample);
+	}
+	recording_reader_destroy(&reader);
+}
+
+/* Reads a pipe to its end, but only when told to: a disk that hangs. */
+struct slow_disk {
+	int read_fd;
+	pthread_mutex_t hold;
+	uint64_t bytes;
+};
+
+static void *drain(void *data)
+{
+	struct slow_disk *disk = data;
+	char block[65536];
+	pthread_mutex_lock(&disk->hold);
+	for (ssize_t got; (got = read(disk->read_fd, block, sizeof(block))) > 0;)
+		disk->bytes += (uint64_t)got;
+	pthread_mutex_unlock(&disk->hold);
+	return NULL;
+}
+
+/* A disk that does not take anything: pushes return at once, the queue is bounded, drops are counted. */
+static void test_slow_disk_never_blocks(void)
+{
+	int ends[2];
+	struct error error = {""};
+	struct recorder_stats stats;
+	struct sample sample;
+	struct slow_disk disk = {.hold = PTHREAD_MUTEX_INITIALIZER};
+	pthread_t thread;
+	sample_init(&sample, 1, 200, 200);
+	CHECK_INT(pipe2(ends, O_CLOEXEC), 0);
+	disk.read_fd = ends[0];
+	pthread_mutex_lock(&disk.hold);
+	pthread_create(&thread, NULL, drain, &disk);
+	const uint64_t bytes = recording_packed_bytes(&sample.frame);
+	const struct recorder_params params = {.writer = {.fd = ends[1]}, .queue_bytes = 4 * bytes};
+	struct recorder *recorder = recorder_create(&params, &error);
+	unsigned taken = 0;
+	for (int i = 0; i < 50; i++)
+		taken += recorder_push(recorder, &sample.frame, 1);
+	recorder_stats(recorder, &stats);
+	CHECK(taken >= 4 && taken < 50);
+	CHECK_INT(stats.frames_dropped, 50 - taken);
+	CHECK(stats.queued_bytes <= 4 * bytes);
+	pthread_mutex_unlock(&disk.hold);
+	CHECK_INT(recorder_destroy(&recorder, &stats, &error), 0);
+	pthread_join(thread, NULL);
+	close(ends[0]);
+	CHECK_INT(stats.frames_written, taken);
+	CHECK_INT(disk.bytes, stats.bytes_written + sizeof(struct pursuit_chunk_header) + 16);
+	sample_finish(&sample);
+}
+
+static void test_frame_limit(void)
+{
+	int ends[2];
+	struct error error = {""};
+	struct sample sample;
+	struct slow_disk disk = {.hold = PTHREAD_MUTEX_INITIALIZER};
+	pthread_t thread;
+	sample_init(&sample, 1, 200, 200);
+	CHECK_INT(pipe2(ends, O_CLOEXEC), 0);
+	disk.read_fd = ends[0];
+	pthread_mutex_lock(&disk.hold);
+	pthread_create(&thread, NULL, drain, &disk);
+	/* Smaller than one frame: a frame is still taken when nothing else waits. */
+	const struct recorder_params params = {.writer = {.fd = ends[1]}, .queue_bytes = 10, .queue_frames = 2};
+	struct recorder *recorder = recorder_create(&params, &error);
+	CHECK(recorder_push(recorder, &sample.frame, 1));
+	CHECK(!recorder_push(recorder, &sample.frame, 1));
+	pthread_mutex_unlock(&disk.hold);
+	CHECK_INT(recorder_destroy(&recorder, NULL, &error), 0);
+	pthread_join(thread, NULL);
+	close(ends[0]);
+	sample_finish(&sample);
+}
+
+/* The file size limit stands for a full disk. The thread survives SIGXFSZ though nobody ignores it. */
+static void test_disk_fills_up(void)
+{
+	struct error error = {""};
+	struct rlimit before;
+	struct recorder_stats stats;
+	struct sample sample;
+	sample_init(&sample, 1, 64, 64);
+	const struct recorder_params params = {.writer = {.path = sample_path("full.pursuit"), .level = 1}};
+	CHECK_INT(getrlimit(RLIMIT_FSIZE, &before), 0);
+	CHECK_INT(setrlimit(RLIMIT_FSIZE, &(struct rlimit){100000, before.rlim_max}), 0);
+	struct recorder *recorder = recorder_create(&params, &error);
+	for (;;) {
+		recorder_push(recorder, &sample.frame, 1);
+		recorder_stats(recorder, &stats);
+		if (stats.failed)
+			break;
+		usleep(500);
+	}
+	CHECK(strstr(stats.text, "full.pursuit") && strstr(stats.text, "limit"));
+	const uint64_t dropped = stats.frames_dropped;
+	CHECK(!recorder_push(recorder, &sample.frame, 1));
+	recorder_stats(recorder, &stats);
+	CHECK(stats.frames_dropped > dropped);
+	CHECK_INT(recorder_destroy(&recorder, &stats, &error), -EFBIG);
+	CHECK_STRING(error.text, stats.text);
+	CHECK_INT(setrlimit(RLIMIT_FSIZE, &before), 0);
+	struct recording_reader *reader =
+		recording_reader_create(&(struct recording_reader_params){.path = sample_path("full.pursuit")}, &error);
+	CHECK(stats.frames_written > 0);
+	CHECK_INT(recording_reader_frame_count(reader), stats.frames_written);
+	CHECK(!recording_reader_summary(reader)->truncated);
+	recording_reader_destroy(&reader);
+	sample_finish(&sample);
+}
+
+static void test_cannot_create(void)
+{
+	struct error error = {""};
+	const struct recorder_params params = {.writer = {.path = "/no/such/folder/x.pursuit"}};
+	CHECK(!recorder_create(&params, &error));
+	CHECK(strstr(error.text, "/no/such/folder/x.pursuit") != NULL);
+}
+
+int main(void)
+{
+	RUN(test_all_frames_in_order);
+	RUN(test_slow_disk_never_blocks);
+	RUN(test_frame_limit);
+	RUN(test_disk_fills_up);
+	RUN(test_cannot_create);
+	sample_folder_remove();
+	return test_result();
+}
