@@ -26,11 +26,11 @@ enum plan_rest {
 };
 
 struct plan_params {
-	uint32_t cell;              /* 4 to 64 pixels; 0: 8 */
-	uint32_t threshold_quarter; /* q_min in quarter pixels, 1 to 63; 0: 2 */
+	uint32_t cell;              /* 4 to 64 pixels, clamped; 0: 8 */
+	uint32_t threshold_quarter; /* q_min in quarter pixels, 1 to 63, clamped; 0: 2 */
 	float display_width_mm;     /* > 0; 0: 531 (24 inch, 16:9) */
 	float viewing_distance_mm;  /* > 0; 0: 600 */
-	float last_phase;           /* p_last, 0 to 8 */
+	float last_phase;           /* p_last, 0 to 8; clamped, NaN is 0 */
 	uint64_t real_interval_ns;  /* T as the pacer knows it; 0: the frame's own */
 };
 
@@ -55,8 +55,8 @@ struct plan {
 	uint32_t index_count;
 	uint32_t snapped;         /* vertices */
 	uint32_t folded;          /* triangles that turn over at last_phase */
-	uint32_t doubtful;        /* triangles with stretch(last_phase) > 1.25 */
-	uint64_t invalid_pixels;  /* NaN or infinite motion */
+	uint32_t doubtful;        /* others with stretch(last_phase) > 1.25, that is with w > 0 */
+	uint64_t invalid_pixels;  /* of the picture: NaN or infinite motion there; 0 without looking if cut and the like */
 	float max_displacement;   /* of any vertex, pixels per real interval */
 	/* owned storage, reused from frame to frame; no allocation in the steady state */
 	uint32_t vertex_capacity, index_capacity;
@@ -77,7 +77,7 @@ int plan_make(struct plan *plan, const struct frame *frame, const struct plan_pa
 /* "still", "cut", ...; "" for PLAN_MOVES. Static. */
 const char *plan_rest_name(enum plan_rest rest);
 
-/* One JSON object on one line: sizes, counts, rest, bounds; no vertices. */
+/* One JSON object on one line, with a newline: sizes, counts, rest, bounds; no vertices. */
 void plan_print(const struct plan *plan, FILE *out);
 
 #endif

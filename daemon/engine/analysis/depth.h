@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* One depth value to z; the same bits in the kernels and for single pixels. */
+#ifndef PURSUIT_ANALYSIS_DEPTH_H
+#define PURSUIT_ANALYSIS_DEPTH_H
+
+#include <string.h>
+
+#include "daemon/engine/analysis/levels.h"
+
+static inline float plan_float_of(uint32_t bits)
+{
+	float value;
+	memcpy(&value, &bits, sizeof(value));
+	return value;
+}
+
+static inline uint32_t plan_bits_of(float value)
+{
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof(bits));
+	return bits;
+}
+
+static inline float plan_depth_decode16(uint32_t raw)
+{
+	return (float)(int32_t)(raw & 0xffffu) / 65535.0f;
+}
+
+static inline float plan_depth_decode24(uint32_t raw)
+{
+	return (float)(int32_t)(raw & 0xffffffu) / 16777215.0f;
+}
+
+static inline float plan_depth_clamp(float z)
+{
+	z = z == z ? z : 1.0f;
+	z = z > 0.0f ? z : 0.0f;
+	return z < 1.0f ? z : 1.0f;
+}
+
+static inline float plan_depth_range(float d, float near_distance, float range)
+{
+	return plan_depth_clamp((d - near_distance) / range);
+}
+
+static inline float plan_depth_infinite(float d, float near_distance)
+{
+	float z = 1.0f - near_distance / d;
+	return plan_depth_clamp(d <= near_distance ? 0.0f : z);
+}
+
+static inline float plan_depth_open(float d)
+{
+	return plan_depth_clamp(d / (1.0f + d));
+}
+
+/* z of one pixel from its bits. */
+static inline float plan_depth_value(uint32_t raw, const struct plan_depth *depth)
+{
+	float d = depth->format == PURSUIT_FORMAT_DEPTH16   ? plan_depth_decode16(raw)
+	          : depth->format == PURSUIT_FORMAT_DEPTH24 ? plan_depth_decode24(raw)
+	                                                    : plan_float_of(raw);
+	switch (depth->map) {
+	case PLAN_DEPTH_REVERSED:
+		return plan_depth_clamp(1.0f - d);
+	case PLAN_DEPTH_RANGE:
+		return plan_depth_range(d, depth->near_distance, depth->range);
+	case PLAN_DEPTH_INFINITE:
+		return plan_depth_infinite(d, depth->near_distance);
+	case PLAN_DEPTH_OPEN:
+		return plan_depth_open(d);
+	case PLAN_DEPTH_AS_IS:
+	default:
+		return plan_depth_clamp(d);
+	}
+}
+
+#endif

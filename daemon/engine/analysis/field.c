@@ -1,0 +1,99 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/analysis/field.h"
+
+#include <math.h>
+#include <string.h>
+
+enum plan_slot {
+	SLOT_UNKNOWN = 0,
+	SLOT_STILL,  /* u is 0 all over */
+	SLOT_MOVES,
+};
+
+struct plan_scale plan_scale_make(double real_s, double motion_s, uint32_t width, const struct plan_params *params)
+{
+	double display = params->display_width_mm > 0 ? (double)params->display_width_mm : 531.0;
+	double distance = params->viewing_distance_mm > 0 ? (double)params->viewing_distance_mm : 600.0;
+	double pixel = atan(display / width / distance) * (180.0 / 3.14159265358979323846);
+	double ratio = fmin(fmax(real_s / motion_s, 0.125), 8.0);
+	struct plan_scale scale = {.ratio = (float)ratio, .degrees = isfinite(pixel) ? (float)(pixel / motion_s) : 0.0f};
+	double plain = fmin(fmin(70.0 / (double)scale.degrees, 16384.0 / ratio), 65504.0);
+	/* A little less, so that what rounds to the limit is looked at with care. */
+	scale.plain_squared = (float)(plain * plain * 0.999);
+	return scale;
+}
+
+void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uint32_t cell, struct plan_arena *arena)
+{
+	plan_rows_init(&motion->rows, frame, PURSUIT_ROLE_MOTION, arena);
+	motion->half = motion->rows.pixel_bytes == 4;
+	motion->width = motion->rows.colour_width;
+	motion->height = motion->rows.colour_height;
+	motion->invalid = 0;
+	motion->u.ring = cell + 1;
+	motion->u.stride = (motion->width + 16) / 16 * 16;
+	motion->u.ux = plan_arena_take(arena, motion->u.ring * motion->u.stride * sizeof(float));
+	motion->u.uy = plan_arena_take(arena, motion->u.ring * motion->u.stride * sizeof(float));
+	motion->decoded = plan_arena_take(arena, 2 * (size_t)motion->width * sizeof(float));
+	memset(motion->slots, SLOT_UNKNOWN, sizeof(motion->slots));
+}
+
+static bool is_zero(const struct plan_motion *motion, uint32_t y)
+{
+	const uint8_t *row = plan_rows_source(&motion->rows, y);
+	if ((uintptr_t)row % 4 != 0)
+		return false;
+	size_t words = (size_t)motion->rows.width * motion->rows.pixel_bytes / 4;
+	return !motion->kernels->any_bits((const uint32_t *)(const void *)row, words,
+	                                  motion->half ? 0x7fff7fffu : 0x7fffffffu);
+}
+
+static void clear(struct plan_motion *motion, uint32_t slot)
+{
+	if (motion->slots[slot] == SLOT_STILL)
+		return;
+	memset(motion->u.ux + slot * motion->u.stride, 0, motion->u.stride * sizeof(float));
+	memset(motion->u.uy + slot * motion->u.stride, 0, motion->u.stride * sizeof(float));
+	motion->slots[slot] = SLOT_STILL;
+}
+
+static void repeat(struct plan_motion *motion, uint32_t slot)
+{
+	uint32_t last = (slot ? slot : motion->u.ring) - 1;
+	size_t stride = motion->u.stride;
+	memcpy(motion->u.ux + slot * stride, motion->u.ux + last * stride, stride * sizeof(float));
+	memcpy(motion->u.uy + slot * stride, motion->u.uy + last * stride, stride * sizeof(float));
+	motion->slots[slot] = motion->slots[last];
+}
+
+void plan_motion_load(struct plan_motion *motion, uint32_t y)
+{
+	const struct plan_kernels *kernels = motion->kernels;
+	uint32_t slot = y % motion->u.ring, width = motion->width;
+	if (y >= motion->height) {
+		repeat(motion, slot);
+		return;
+	}
+	if (is_zero(motion, y)) {
+		clear(motion, slot);
+		return;
+	}
+	const void *raw = plan_rows_get(&motion->rows, y);
+	if (motion->half)
+		kernels->decode_half(raw, 2 * (size_t)width, motion->decoded);
+	const float *motions = motion->half ? motion->decoded : raw;
+	float *ux = motion->u.ux + slot * motion->u.stride, *uy = motion->u.uy + slot * motion->u.stride;
+	uint32_t seen = kernels->scale_row(motions, width, &motion->scale, ux, uy);
+	if (seen & PLAN_ROW_ODD)
+		seen = kernels->careful_row(motions, width, &motion->scale, ux, uy, &motion->invalid);
+	ux[width] = ux[width - 1];
+	uy[width] = uy[width - 1];
+	motion->slots[slot] = seen & PLAN_ROW_MOVES ? SLOT_MOVES : SLOT_UNKNOWN;
+}
+
+bool plan_motion_moves(const struct plan_motion *motion, uint32_t y)
+{
+	return motion->slots[y % motion->u.ring] == SLOT_MOVES;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* The field of effective displacement u, row by row (docs/method.md, 1). */
+#ifndef PURSUIT_ANALYSIS_FIELD_H
+#define PURSUIT_ANALYSIS_FIELD_H
+
+#include "daemon/engine/analysis/levels.h"
+#include "daemon/engine/analysis/rows.h"
+
+#define PLAN_MAX_CELL 64u
+
+struct plan_motion {
+	const struct plan_kernels *kernels;
+	struct plan_rows rows;
+	bool half; /* RG16F, else RG32F */
+	struct plan_scale scale;
+	uint32_t width, height; /* of colour */
+	struct plan_field u;
+	float *decoded; /* a row of motion as floats, when half */
+	uint8_t slots[PLAN_MAX_CELL + 1]; /* what each slot holds, enum plan_slot */
+	uint64_t invalid;
+};
+
+/* T / S and the tracking limit. Times in seconds, both known. */
+struct plan_scale plan_scale_make(double real_s, double motion_s, uint32_t width, const struct plan_params *params);
+
+/* Ring buffers for cells of that size; `rows` is that of the motion plane. */
+void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uint32_t cell, struct plan_arena *arena);
+
+/* Puts row y, at most height, into its slot; row `height` repeats the last one. Each row once, in order. */
+void plan_motion_load(struct plan_motion *motion, uint32_t y);
+
+/* Is any u of row y, in its slot, not 0? */
+bool plan_motion_moves(const struct plan_motion *motion, uint32_t y);
+
+static inline const float *plan_field_x(const struct plan_field *field, uint32_t y)
+{
+	return field->ux + y % field->ring * field->stride;
+}
+
+static inline const float *plan_field_y(const struct plan_field *field, uint32_t y)
+{
+	return field->uy + y % field->ring * field->stride;
+}
+
+#endif

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/analysis/grid.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "daemon/engine/analysis/depth.h"
+
+static float lesser(float a, float b)
+{
+	return a < b ? a : b;
+}
+
+/* i0 and i1 of an extent: the pixels that meet at its centre, or the one that holds it twice. */
+static void middle(uint32_t start, uint32_t size, uint32_t *first, uint32_t *second)
+{
+	*second = start + size / 2;
+	*first = size % 2 ? *second : *second - 1;
+}
+
+static uint32_t extent(uint32_t start, uint32_t cell, uint32_t end)
+{
+	return end - start < cell ? end - start : cell;
+}
+
+static struct plan_depth depth_of(const struct pursuit_frame_header *header)
+{
+	int index = plan_find_plane(header, PURSUIT_ROLE_DEPTH);
+	float near_distance = header->near_distance, far_distance = header->far_distance;
+	struct plan_depth depth = {.format = index < 0 ? 0 : header->planes[index].format, .near_distance = near_distance,
+	                           .range = far_distance - near_distance};
+	if (header->depth_kind == PURSUIT_DEPTH_DEVICE_REVERSED)
+		depth.map = PLAN_DEPTH_REVERSED;
+	else if (header->depth_kind != PURSUIT_DEPTH_LINEAR)
+		depth.map = PLAN_DEPTH_AS_IS;
+	else if (near_distance > 0 && far_distance > near_distance)
+		depth.map = isinf(far_distance) ? PLAN_DEPTH_INFINITE : PLAN_DEPTH_RANGE;
+	else
+		depth.map = PLAN_DEPTH_OPEN;
+	return depth;
+}
+
+static void take_vertex_row(struct plan_vertex_row *row, size_t columns, struct plan_arena *arena)
+{
+	float **parts[] = {&row->x, &row->y, &row->ux, &row->uy, &row->z, &row->snapped};
+	for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
+		*parts[i] = plan_arena_take(arena, columns * sizeof(float));
+}
+
+static void fill_columns(struct plan_grid *grid, uint32_t cell)
+{
+	uint32_t width = grid->plan->width;
+	for (uint32_t c = 0; c < grid->cells_x; c++) {
+		uint32_t size = extent(c * cell, cell, width);
+		middle(c * cell, size, &grid->first[c], &grid->second[c]);
+		grid->centres[c] = (float)(c * cell) + 0.5f * (float)size;
+	}
+	for (uint32_t i = 0; i < width; i++)
+		grid->z[i] = grid->z_second[i] = 0.5f;
+}
+
+void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t cell, uint32_t threshold,
+                    struct plan_arena *arena)
+{
+	size_t width = grid->plan->width;
+	grid->cells_x = (grid->plan->width + cell - 1) / cell;
+	grid->cells_y = (grid->plan->height + cell - 1) / cell;
+	grid->least = (float)(threshold * threshold) / 16.0f;
+	size_t columns = grid->cells_x + 2;
+	plan_rows_init(&grid->rows, frame, PURSUIT_ROLE_DEPTH, arena);
+	if (frame->header.depth_kind == PURSUIT_DEPTH_NONE)
+		grid->rows.data = NULL;
+	grid->depth = depth_of(&frame->header);
+	grid->peaks = plan_arena_take(arena, width * sizeof(float));
+	grid->largest = plan_arena_take(arena, columns * sizeof(float));
+	grid->centres = plan_arena_take(arena, columns * sizeof(float));
+	grid->first = plan_arena_take(arena, columns * sizeof(uint32_t));
+	grid->second = plan_arena_take(arena, columns * sizeof(uint32_t));
+	grid->z = plan_arena_take(arena, width * sizeof(float));
+	grid->z_second = plan_arena_take(arena, width * sizeof(float));
+	grid->diagonals = plan_arena_take(arena, columns * sizeof(uint32_t));
+	take_vertex_row(&grid->ring[0], columns, arena);
+	take_vertex_row(&grid->ring[1], columns, arena);
+	grid->row = 0;
+	if (arena->base)
+		fill_columns(grid, cell);
+}
+
+/* Makes room for `count` of `size` bytes; what was there is lost. */
+static int reserve(void **data, uint32_t *capacity, size_t count, size_t size)
+{
+	if (count <= *capacity)
+		return 0;
+	free(*data);
+	*capacity = 0;
+	*data = malloc(count * size);
+	if (!*data)
+		return -ENOMEM;
+	*capacity = (uint32_t)count;
+	return 0;
+}
+
+static int reserve_grid(struct plan *plan, size_t columns, size_t rows)
+{
+	void *vertices = plan->vertices, *indices = plan->indices;
+	int failed = reserve(&vertices, &plan->vertex_capacity, columns * rows, sizeof(*plan->vertices));
+	plan->vertices = vertices;
+	if (failed)
+		return failed;
+	failed = reserve(&indices, &plan->index_capacity, (columns - 1) * (rows - 1) * 6, sizeof(*plan->indices));
+	plan->indices = indices;
+	return failed;
+}
+
+static uint32_t *put_quad(uint32_t *index, uint32_t v00, uint32_t columns, uint32_t main)
+{
+	uint32_t v10 = v00 + 1, v01 = v00 + columns, v11 = v01 + 1;
+	index[0] = v00;
+	index[1] = v10;
+	index[2] = v01 + main;
+	index[3] = v10 - main;
+	index[4] = v11;
+	index[5] = v01;
+	return index + 6;
+}
+
+/* Triangles between the row in work and the one before. */
+static void put_quads(struct plan_grid *grid)
+{
+	struct plan *plan = grid->plan;
+	const struct plan_vertex_row *upper = &grid->ring[(grid->row + 1) % 2], *lower = &grid->ring[grid->row % 2];
+	uint32_t columns = plan->columns, start = (grid->row - 1) * columns;
+	uint32_t *index = plan->indices + plan->index_count;
+	plan->index_count += 6 * (columns - 1);
+	if (upper->still && lower->still) {
+		for (uint32_t i = 0; i + 1 < columns; i++)
+			index = put_quad(index, start + i, columns, 1);
+		return;
+	}
+	struct plan_quad_counts counts = grid->kernels->quads(upper, lower, columns - 1, plan->last_phase, grid->diagonals);
+	plan->folded += counts.folded;
+	plan->doubtful += counts.doubtful;
+	for (uint32_t i = 0; i + 1 < columns; i++)
+		index = put_quad(index, start + i, columns, grid->diagonals[i]);
+}
+
+static void put_row(struct plan_grid *grid)
+{
+	struct plan *plan = grid->plan;
+	const struct plan_vertex_row *row = &grid->ring[grid->row % 2];
+	struct plan_vertex *vertex = plan->vertices + (size_t)grid->row * plan->columns;
+	for (uint32_t i = 0; i < plan->columns; i++)
+		vertex[i] = (struct plan_vertex){row->x[i], row->y[i], row->ux[i], row->uy[i], row->z[i], row->snapped[i]};
+	if (!row->still) {
+		float largest = sqrtf(grid->kernels->largest_square(row->ux, row->uy, plan->columns));
+		plan->max_displacement = largest > plan->max_displacement ? largest : plan->max_displacement;
+	}
+	if (grid->row > 0)
+		put_quads(grid);
+	grid->row++;
+}
+
+/* Regular positions at height y, z from grid->z, nothing moves. The border's z from row `edge`. */
+static struct plan_vertex_row *start_row(struct plan_grid *grid, float y, const float *edge)
+{
+	struct plan_vertex_row *row = &grid->ring[grid->row % 2];
+	uint32_t last = grid->cells_x + 1, width = grid->plan->width;
+	row->still = true;
+	memset(row->ux, 0, (last + 1) * sizeof(float));
+	memset(row->uy, 0, (last + 1) * sizeof(float));
+	memset(row->snapped, 0, (last + 1) * sizeof(float));
+	for (uint32_t i = 0; i <= last; i++)
+		row->y[i] = y;
+	row->x[0] = 0;
+	row->z[0] = edge[0];
+	memcpy(row->x + 1, grid->centres, grid->cells_x * sizeof(float));
+	for (uint32_t c = 0; c < grid->cells_x; c++)
+		row->z[c + 1] = lesser(grid->z[grid->first[c]], grid->z[grid->second[c]]);
+	row->x[last] = (float)width;
+	row->z[last] = edge[width - 1];
+	return row;
+}
+
+static void read_depth(struct plan_grid *grid, uint32_t y, float *z)
+{
+	if (grid->rows.data)
+		grid->kernels->depth_row(plan_rows_get(&grid->rows, y), grid->plan->width, &grid->depth, z);
+}
+
+static void put_border(struct plan_grid *grid, uint32_t pixel_row, float y)
+{
+	read_depth(grid, pixel_row, grid->z);
+	struct plan_vertex_row *row = start_row(grid, y, grid->z);
+	for (uint32_t c = 0; c < grid->cells_x; c++)
+		row->z[c + 1] = grid->z[grid->second[c]];
+	put_row(grid);
+}
+
+int plan_grid_begin(struct plan_grid *grid)
+{
+	uint32_t columns = grid->cells_x + 2, rows = grid->cells_y + 2;
+	int failed = reserve_grid(grid->plan, columns, rows);
+	if (failed)
+		return failed;
+	grid->plan->columns = columns;
+	grid->plan->rows = rows;
+	put_border(grid, 0, 0);
+	return 0;
+}
+
+/* z of pixel rows j0 and j1: the smaller into grid->z, j1 alone into grid->z_second. */
+static void read_middle(struct plan_grid *grid, uint32_t j0, uint32_t j1)
+{
+	if (!grid->rows.data)
+		return;
+	read_depth(grid, j0, grid->z);
+	if (j0 == j1) {
+		memcpy(grid->z_second, grid->z, grid->plan->width * sizeof(float));
+		return;
+	}
+	read_depth(grid, j1, grid->z_second);
+	for (uint32_t i = 0; i < grid->plan->width; i++)
+		grid->z[i] = lesser(grid->z[i], grid->z_second[i]);
+}
+
+static struct plan_vertex_row *start_cell_row(struct plan_grid *grid, uint32_t r)
+{
+	uint32_t cell = grid->plan->cell, start = r * cell, size = extent(start, cell, grid->plan->height), j0, j1;
+	middle(start, size, &j0, &j1);
+	read_middle(grid, j0, j1);
+	return start_row(grid, (float)start + 0.5f * (float)size, grid->z_second);
+}
+
+void plan_grid_still_row(struct plan_grid *grid, uint32_t r)
+{
+	start_cell_row(grid, r);
+	put_row(grid);
+}
+
+/* Largest k with k / 4 <= g, at most 63: exact, since k² and 16 g² are. */
+static uint32_t quantised(float square)
+{
+	if (16.0f * square >= 63.0f * 63.0f)
+		return 63;
+	uint32_t k = (uint32_t)(4.0f * sqrtf(square));
+	while ((float)(k * k) > 16.0f * square)
+		k--;
+	while ((float)((k + 1) * (k + 1)) <= 16.0f * square)
+		k++;
+	return k;
+}
+
+static float pixel_depth(const struct plan_grid *grid, uint32_t x, uint32_t y)
+{
+	return grid->rows.data ? plan_depth_value(plan_rows_pixel(&grid->rows, x, y), &grid->depth) : 0.5f;
+}
+
+struct side {
+	uint32_t x, y;
+	float ux, uy, z;
+};
+
+static struct side side_at(const struct plan_grid *grid, uint32_t x, uint32_t y)
+{
+	const struct plan_field *u = &grid->motion->u;
+	return (struct side){x, y, plan_field_x(u, y)[x], plan_field_y(u, y)[x], pixel_depth(grid, x, y)};
+}
+
+static bool nearer(const struct side *a, const struct side *b)
+{
+	if (a->z != b->z)
+		return a->z < b->z;
+	return a->ux * a->ux + a->uy * a->uy > b->ux * b->ux + b->uy * b->uy;
+}
+
+/* Puts the vertex of a cell on its strongest discontinuity. */
+static void snap(struct plan_grid *grid, struct plan_vertex_row *row, uint32_t c, const struct plan_cell *cell)
+{
+	const struct plan_field *u = &grid->motion->u;
+	uint32_t k = quantised(grid->largest[c]);
+	uint32_t found = grid->kernels->locate(u, cell, (float)(k * k) / 16.0f);
+	uint32_t x = cell->x + found % 64, y = cell->y + found / 64;
+	const float *ux = plan_field_x(u, y), *uy = plan_field_y(u, y);
+	float dx = ux[x + 1] - ux[x], dy = uy[x + 1] - uy[x];
+	float down_x = plan_field_x(u, y + 1)[x] - ux[x], down_y = plan_field_y(u, y + 1)[x] - uy[x];
+	bool across = dx * dx + dy * dy >= down_x * down_x + down_y * down_y;
+	struct side self = side_at(grid, x, y), other = side_at(grid, x + across, y + !across);
+	const struct side *side = nearer(&other, &self) ? &other : &self;
+	row->x[c + 1] = (float)x + (across ? 1.0f : 0.5f);
+	row->y[c + 1] = (float)y + (across ? 0.5f : 1.0f);
+	row->ux[c + 1] = side->ux;
+	row->uy[c + 1] = side->uy;
+	row->z[c + 1] = side->z;
+	row->snapped[c + 1] = 1;
+}
+
+/* u of vertices that do not snap. */
+static void put_means(const struct plan_grid *grid, struct plan_vertex_row *row, uint32_t j0, uint32_t j1)
+{
+	const struct plan_field *u = &grid->motion->u;
+	const float *upper_x = plan_field_x(u, j0), *upper_y = plan_field_y(u, j0);
+	const float *lower_x = plan_field_x(u, j1), *lower_y = plan_field_y(u, j1);
+	for (uint32_t c = 0; c < grid->cells_x; c++) {
+		uint32_t i0 = grid->first[c], i1 = grid->second[c];
+		row->ux[c + 1] = ((upper_x[i0] + lower_x[i0]) + (upper_x[i1] + lower_x[i1])) * 0.25f;
+		row->uy[c + 1] = ((upper_y[i0] + lower_y[i0]) + (upper_y[i1] + lower_y[i1])) * 0.25f;
+	}
+}
+
+static void find_peaks(struct plan_grid *grid, uint32_t start, uint32_t size)
+{
+	const struct plan_motion *motion = grid->motion;
+	uint32_t width = grid->plan->width;
+	memset(grid->peaks, 0, width * sizeof(float));
+	for (uint32_t y = start; y < start + size; y++) {
+		if (!plan_motion_moves(motion, y) && !plan_motion_moves(motion, y + 1))
+			continue;
+		grid->kernels->gradient_row(plan_field_x(&motion->u, y), plan_field_y(&motion->u, y),
+		                            plan_field_x(&motion->u, y + 1), plan_field_y(&motion->u, y + 1), width, grid->peaks);
+	}
+	grid->kernels->cell_peaks(grid->peaks, width, grid->plan->cell, grid->largest);
+}
+
+void plan_grid_moving_row(struct plan_grid *grid, uint32_t r)
+{
+	uint32_t cell = grid->plan->cell, start = r * cell, size = extent(start, cell, grid->plan->height), j0, j1;
+	struct plan_vertex_row *row = start_cell_row(grid, r);
+	middle(start, size, &j0, &j1);
+	row->still = false;
+	put_means(grid, row, j0, j1);
+	find_peaks(grid, start, size);
+	for (uint32_t c = 0; c < grid->cells_x; c++) {
+		if (grid->largest[c] < grid->least)
+			continue;
+		struct plan_cell at = {c * cell, start, extent(c * cell, cell, grid->plan->width), size};
+		snap(grid, row, c, &at);
+		grid->plan->snapped++;
+	}
+	put_row(grid);
+}
+
+void plan_grid_end(struct plan_grid *grid)
+{
+	put_border(grid, grid->plan->height - 1, (float)grid->plan->height);
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* The grid of vertices and its triangles (docs/method.md, 2), row by row from the top. */
+#ifndef PURSUIT_ANALYSIS_GRID_H
+#define PURSUIT_ANALYSIS_GRID_H
+
+#include "daemon/engine/analysis/field.h"
+
+struct plan_grid {
+	const struct plan_kernels *kernels;
+	struct plan *plan;
+	const struct plan_motion *motion;
+	uint32_t cells_x, cells_y;
+	float least;   /* g² of q_min */
+	float *peaks;   /* g² by column of pixels */
+	float *largest; /* g² by cell */
+	float *centres; /* x of the centres of cells */
+	uint32_t *first, *second; /* i0 and i1 of the cells */
+	/* depth */
+	struct plan_rows rows; /* without data: z is 0.5 */
+	struct plan_depth depth;
+	float *z, *z_second; /* a row of pixels, the smaller of j0 and j1, and j1 */
+	/* vertices: the row before and the one in work */
+	struct plan_vertex_row ring[2];
+	uint32_t *diagonals;
+	uint32_t row; /* in work */
+};
+
+void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t cell, uint32_t threshold,
+                    struct plan_arena *arena);
+
+/* The row of vertices on the picture's upper border; makes room in the plan. 0 or -ENOMEM. */
+int plan_grid_begin(struct plan_grid *grid);
+
+/* Vertices of cell row r, where nothing moves; or where u of its rows and the one below is in the ring. */
+void plan_grid_still_row(struct plan_grid *grid, uint32_t r);
+void plan_grid_moving_row(struct plan_grid *grid, uint32_t r);
+
+/* The lower border. */
+void plan_grid_end(struct plan_grid *grid);
+
+#endif

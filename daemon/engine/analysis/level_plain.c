@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* Plain C for the base machine: SSE2 on x86-64, NEON on arm64. */
+#include <stddef.h>
+#include <stdint.h>
+
+static inline size_t decode_half_some(const uint16_t *halves, size_t count, float *values)
+{
+	return 0;
+}
+
+#define LEVEL_KERNELS plan_kernels_plain
+#define LEVEL_NAME "plain"
+#include "daemon/engine/analysis/kernels.h"

@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/plan.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+
+#include "daemon/engine/analysis/grid.h"
+
+/* The nanoseconds T and S, each 0 only if neither is known. */
+struct intervals {
+	uint64_t real, motion;
+};
+
+static struct intervals intervals_of(const struct pursuit_frame_header *header, const struct plan_params *params)
+{
+	uint64_t own = header->real_interval_ns;
+	uint64_t motion = header->motion_interval_ns ? header->motion_interval_ns : own;
+	uint64_t real = params->real_interval_ns ? params->real_interval_ns : own;
+	return (struct intervals){real ? real : motion, motion ? motion : real};
+}
+
+static enum plan_rest rest_of(const struct frame *frame, const struct intervals *intervals)
+{
+	const struct pursuit_frame_header *header = &frame->header;
+	int motion = plan_find_plane(header, PURSUIT_ROLE_MOTION);
+	if (header->flags & PURSUIT_FRAME_CUT)
+		return PLAN_CUT;
+	if (header->flags & PURSUIT_FRAME_MOTION_INVALID)
+		return PLAN_MOTION_INVALID;
+	if (motion < 0 || header->motion_kind == PURSUIT_MOTION_NONE || !frame->planes[motion])
+		return PLAN_NO_MOTION;
+	return intervals->real ? PLAN_MOVES : PLAN_NO_INTERVAL;
+}
+
+static void reset(struct plan *plan, const struct frame *frame, const struct plan_params *params)
+{
+	const struct pursuit_frame_header *header = &frame->header;
+	int colour = plan_find_plane(header, PURSUIT_ROLE_COLOR);
+	uint32_t cell = params->cell ? params->cell : 8;
+	plan->frame_id = header->frame_id;
+	plan->width = colour < 0 ? 0 : header->planes[colour].width;
+	plan->height = colour < 0 ? 0 : header->planes[colour].height;
+	plan->cell = cell < 4 ? 4 : cell > PLAN_MAX_CELL ? PLAN_MAX_CELL : cell;
+	plan->rest = PLAN_MOVES;
+	plan->last_phase = params->last_phase > 0 ? fminf(params->last_phase, 8.0f) : 0.0f;
+	plan->columns = plan->rows = plan->index_count = 0;
+	plan->snapped = plan->folded = plan->doubtful = 0;
+	plan->invalid_pixels = 0;
+	plan->max_displacement = 0;
+}
+
+static void lay_out(struct plan_motion *motion, struct plan_grid *grid, const struct frame *frame, uint32_t threshold,
+                    struct plan_arena *arena)
+{
+	uint32_t cell = grid->plan->cell;
+	plan_motion_init(motion, frame, cell, arena);
+	plan_grid_init(grid, frame, cell, threshold, arena);
+}
+
+/* Cuts the scratch into buffers, after growing it if it is too small. */
+static int prepare(struct plan *plan, struct plan_motion *motion, struct plan_grid *grid, const struct frame *frame,
+                   uint32_t threshold)
+{
+	struct plan_arena arena = {NULL, 0};
+	lay_out(motion, grid, frame, threshold, &arena);
+	if (arena.used > plan->scratch_bytes) {
+		free(plan->scratch);
+		plan->scratch_bytes = 0;
+		plan->scratch = aligned_alloc(64, arena.used);
+		if (!plan->scratch)
+			return -ENOMEM;
+		plan->scratch_bytes = arena.used;
+	}
+	arena = (struct plan_arena){plan->scratch, 0};
+	lay_out(motion, grid, frame, threshold, &arena);
+	return 0;
+}
+
+/* Cell rows from the top; the grid begins with the first that moves. */
+static int analyse(struct plan_motion *motion, struct plan_grid *grid)
+{
+	uint32_t cell = grid->plan->cell, height = grid->plan->height;
+	bool begun = false;
+	plan_motion_load(motion, 0);
+	for (uint32_t r = 0; r < grid->cells_y; r++) {
+		uint32_t start = r * cell, end = height - start < cell ? height : start + cell;
+		bool moves = plan_motion_moves(motion, start);
+		for (uint32_t y = start + 1; y <= end; y++) {
+			plan_motion_load(motion, y);
+			moves |= plan_motion_moves(motion, y);
+		}
+		if (moves && !begun) {
+			int failed = plan_grid_begin(grid);
+			if (failed)
+				return failed;
+			begun = true;
+			for (uint32_t still = 0; still < r; still++)
+				plan_grid_still_row(grid, still);
+		}
+		if (moves)
+			plan_grid_moving_row(grid, r);
+		else if (begun)
+			plan_grid_still_row(grid, r);
+	}
+	if (begun)
+		plan_grid_end(grid);
+	else
+		grid->plan->rest = PLAN_STILL;
+	return 0;
+}
+
+static int out_of_memory(struct plan *plan, struct error *error)
+{
+	plan->columns = plan->rows = 0;
+	return error_set(error, -ENOMEM, "no memory for the plan of a %u x %u picture with cells of %u pixels", plan->width,
+	                 plan->height, plan->cell);
+}
+
+int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
+                   const struct plan_kernels *kernels, struct error *error)
+{
+	struct intervals intervals = intervals_of(&frame->header, params);
+	reset(plan, frame, params);
+	plan->real_interval_s = (double)intervals.real * 1e-9;
+	plan->rest = rest_of(frame, &intervals);
+	if (plan->rest != PLAN_MOVES)
+		return 0;
+	uint32_t threshold = params->threshold_quarter ? params->threshold_quarter : 2;
+	struct plan_motion motion = {.kernels = kernels};
+	struct plan_grid grid = {.kernels = kernels, .plan = plan, .motion = &motion};
+	motion.scale = plan_scale_make(plan->real_interval_s, (double)intervals.motion * 1e-9, plan->width, params);
+	if (prepare(plan, &motion, &grid, frame, threshold < 63 ? threshold : 63))
+		return out_of_memory(plan, error);
+	if (analyse(&motion, &grid))
+		return out_of_memory(plan, error);
+	plan->invalid_pixels = motion.invalid;
+	return 0;
+}
+
+int plan_make(struct plan *plan, const struct frame *frame, const struct plan_params *params, struct error *error)
+{
+	return plan_make_with(plan, frame, params, plan_level_kernels(plan_level_best()), error);
+}
+
+void plan_finish(struct plan *plan)
+{
+	if (!plan)
+		return;
+	free(plan->vertices);
+	free(plan->indices);
+	free(plan->scratch);
+	*plan = (struct plan){0};
+}

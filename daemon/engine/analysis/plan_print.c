@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include <inttypes.h>
+
+#include "daemon/engine/plan.h"
+
+const char *plan_rest_name(enum plan_rest rest)
+{
+	switch (rest) {
+	case PLAN_STILL:
+		return "still";
+	case PLAN_CUT:
+		return "cut";
+	case PLAN_MOTION_INVALID:
+		return "motion-invalid";
+	case PLAN_NO_MOTION:
+		return "no-motion";
+	case PLAN_NO_INTERVAL:
+		return "no-interval";
+	case PLAN_MOVES:
+	default:
+		return "";
+	}
+}
+
+void plan_print(const struct plan *plan, FILE *out)
+{
+	fprintf(out, "{\"frame\": %" PRIu64 ", \"width\": %u, \"height\": %u, \"cell\": %u, \"rest\": \"%s\", ", plan->frame_id,
+	        plan->width, plan->height, plan->cell, plan_rest_name(plan->rest));
+	fprintf(out, "\"real_interval_ms\": %.6f, \"last_phase\": %.6f, ", plan->real_interval_s * 1e3,
+	        (double)plan->last_phase);
+	fprintf(out, "\"columns\": %u, \"rows\": %u, \"vertices\": %u, \"triangles\": %u, ", plan->columns, plan->rows,
+	        plan->columns * plan->rows, plan->index_count / 3);
+	fprintf(out, "\"snapped\": %u, \"folded\": %u, \"doubtful\": %u, \"invalid_pixels\": %" PRIu64 ", ", plan->snapped,
+	        plan->folded, plan->doubtful, plan->invalid_pixels);
+	fprintf(out, "\"max_displacement\": %.6f}\n", (double)plan->max_displacement);
+}
