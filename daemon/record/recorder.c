@@ -8,13 +8,11 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #define DEFAULT_QUEUE_BYTES ((uint64_t)512 << 20)
 #define NICENESS 10
-#define HUGE_PAGE ((size_t)2 << 20)
 
 struct item {
 	struct item *next;
@@ -142,23 +140,6 @@ static struct item *take_spare(struct recorder *recorder, uint64_t bytes)
 	return NULL;
 }
 
-/* Large buffers ask for huge pages: 20 MB of small ones are 5000 faults in the pushing thread. */
-static struct item *allocate(uint64_t bytes)
-{
-	const size_t size = sizeof(struct item) + bytes;
-	struct item *item = NULL;
-	if (size < HUGE_PAGE) {
-		item = malloc(size);
-	} else {
-		item = aligned_alloc(HUGE_PAGE, (size + HUGE_PAGE - 1) / HUGE_PAGE * HUGE_PAGE);
-		if (item)
-			madvise(item, size, MADV_HUGEPAGE);
-	}
-	if (item)
-		item->room = bytes;
-	return item;
-}
-
 static bool has_room(const struct recorder *recorder, uint64_t bytes)
 {
 	const struct recorder_stats *stats = &recorder->stats;
@@ -183,8 +164,11 @@ static struct item *begin_push(struct recorder *recorder, uint64_t bytes, bool i
 		item = take_spare(recorder, bytes);
 	}
 	pthread_mutex_unlock(&recorder->lock);
-	if (room && !item)
-		item = allocate(bytes);
+	if (room && !item) {
+		item = malloc(sizeof(*item) + bytes);
+		if (item)
+			item->room = bytes;
+	}
 	if (!item) {
 		pthread_mutex_lock(&recorder->lock);
 		if (room) {
