@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* A stream under test: every call of the shim is timed, since none may wait. */
+#ifndef PURSUIT_TEST_HARNESS_H
+#define PURSUIT_TEST_HARNESS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "client/pursuit.h"
+#include "tests/client/fake_daemon.h"
+
+/* Loose, for a loaded machine: a call that waits for anything would take far longer. */
+#define AT_ONCE_NS UINT64_C(100000000)
+#define MS UINT64_C(1000000)
+
+/* Where the tests' daemon listens. The folder is made by harness_start() and removed by harness_finish(). */
+struct harness {
+	char folder[40];
+	char path[64];
+	uint64_t slowest_ns; /* of the calls since the last close */
+};
+extern struct harness harness;
+
+bool harness_start(void);
+void harness_finish(void);
+
+uint64_t now(void);
+void sleep_ms(long ms);
+int open_files(void);
+
+struct pursuit_frame *timed_acquire(struct pursuit_stream *stream);
+uint64_t timed_submit(struct pursuit_stream *stream, struct pursuit_frame *frame);
+
+/* 64 x 32, colour and 32-bit depth, at harness.path. */
+struct pursuit_stream *open_stream(uint32_t slot_count);
+
+/* Closes, prints the slowest call; false if one took longer than AT_ONCE_NS. */
+bool close_stream(struct pursuit_stream **stream);
+struct pursuit_status status_of(struct pursuit_stream *stream);
+
+/* One frame filled with `value`; its id, 0 if there was no slot. */
+uint64_t send_frame(struct pursuit_stream *stream, uint8_t value);
+
+/* Steps both sides until attached; the time between tries has to pass. */
+bool attach(struct pursuit_stream *stream, struct fake_daemon *daemon);
+
+/* Submits at 60 a second until the stream is in `state`, three seconds at most; the milliseconds it took. */
+uint64_t submit_until(struct pursuit_stream *stream, enum pursuit_state state);
+
+#endif
