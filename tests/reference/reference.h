@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The independent reference: every pass of the method `grid` in plain double
+ * precision on the CPU, written from docs/method.md and from Didyk et al. 2010,
+ * Sections 5 and 6, and not from the engine. Slow, obvious, deterministic.
+ *
+ *   reference_begin(&reference, frame, engine_params, begin_params)   once per real frame
+ *   reference_render(&reference, request, pixels)                     once per displayed frame
+ *
+ * It takes the engine's own parameter structs, so that a test hands both the
+ * same. All intermediate planes stay in the struct to be looked at. Numbers in
+ * brackets are sections of docs/method.md.
+ */
+#ifndef PURSUIT_REFERENCE_H
+#define PURSUIT_REFERENCE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "daemon/engine/engine.h"
+#include "daemon/frame.h"
+
+/* A curve from code values to light: to_light, from_light [0]. */
+struct reference_transfer {
+	uint32_t curve; /* PURSUIT_CURVE_* */
+	double gamma;   /* for PURSUIT_CURVE_GAMMA */
+};
+
+double reference_to_light(const struct reference_transfer *transfer, double code);
+double reference_from_light(const struct reference_transfer *transfer, double light);
+double reference_smoothstep(double a, double b, double x);
+/* code8 [0]. `bias` (0 in the method) shifts the rounding: floor(255 clamp(x) + 0.5 + bias). */
+uint8_t reference_code8(double x, double bias);
+double reference_half(uint16_t half);
+
+/* 8-bit code values, 4 bytes a pixel, B G R A, rows packed from the top. */
+struct reference_picture {
+	uint32_t width, height;
+	uint8_t *data;
+};
+
+void reference_picture_init(struct reference_picture *picture, uint32_t width, uint32_t height);
+void reference_picture_finish(struct reference_picture *picture);
+/* Bilinear, clamped at the edge, position in pixels with centres at .5; B G R in steps (0 to 255). */
+void reference_sample(const struct reference_picture *picture, double x, double y, double out[3]);
+
+/* Colour of a plane in code values of the display [0]; alpha becomes 255. */
+void reference_convert_color(struct reference_picture *out, const struct pursuit_plane *plane, const uint8_t *data,
+							 const struct reference_transfer *display);
+/* The UI layer, premultiplied, code values as they are. */
+void reference_convert_ui(struct reference_picture *out, const struct pursuit_plane *plane, const uint8_t *data);
+
+/* T and S in seconds, 0 unknown [1]. */
+struct reference_timing {
+	double real_s, motion_s;
+	uint32_t n;
+	double last_phase;
+};
+void reference_timing(struct reference_timing *timing, const struct pursuit_frame_header *header,
+					  const struct engine_begin_params *begin);
+
+/* Speed on the display in degrees a second, and the tracking factor f [1]. */
+double reference_speed(double pixels, double seconds, double width, double display_width_mm, double distance_mm);
+double reference_tracking(double degrees_per_second);
+/* Normalised depth of a decoded depth [1]. */
+double reference_depth(uint32_t kind, double near_distance, double far_distance, double value);
+
+/* Effective displacement and depth at each pixel of colour [1]. */
+struct reference_geometry {
+	uint32_t width, height;
+	double *ux, *uy, *z;
+	uint64_t invalid;
+	bool moves; /* some u is not 0 */
+};
+void reference_geometry_init(struct reference_geometry *geometry, const struct frame *frame,
+							 const struct reference_timing *timing, double display_width_mm, double distance_mm);
+void reference_geometry_finish(struct reference_geometry *geometry);
+
+struct reference_vertex {
+	double x, y, ux, uy, z;
+	bool snapped;
+	bool either; /* float and double may come to different vertices: a value lies at a boundary of a decision */
+};
+
+struct reference_triangle {
+	uint32_t v[3];
+	bool either; /* float may split its quad along the other diagonal */
+};
+
+/* The snapped grid [2]. */
+struct reference_grid {
+	uint32_t columns, rows;
+	struct reference_vertex *vertices;
+	uint32_t triangle_count;
+	struct reference_triangle *triangles; /* two a quad, in drawing order */
+	uint32_t snapped;
+};
+/* Quantised discontinuity q at a pixel; gx, gy may be NULL. */
+uint32_t reference_discontinuity(const struct reference_geometry *geometry, uint32_t i, uint32_t j, double *gx,
+								 double *gy);
+void reference_grid_init(struct reference_grid *grid, const struct reference_geometry *geometry, uint32_t cell,
+						 uint32_t threshold_quarter);
+void reference_grid_finish(struct reference_grid *grid);
+/* Corner of a triangle at a phase, and its doubled signed area there. */
+void reference_displaced(const struct reference_grid *grid, const uint32_t v[3], double phase, double x[3],
+						 double y[3]);
+double reference_area2(const struct reference_grid *grid, const uint32_t v[3], double phase);
+/* Singular values (larger first) of the linear part of the map source -> displaced [3]. */
+void reference_singular(const struct reference_grid *grid, const uint32_t v[3], double phase, double sigma[2]);
+
+/* What shows at one pixel. */
+struct reference_hit {
+	int32_t triangle; /* -1: none */
+	double x, y;      /* source position */
+	double z;
+};
+/* The warp [3]: width x height hits. */
+void reference_warp(const struct reference_grid *grid, uint32_t width, uint32_t height, double phase,
+					struct reference_hit *hits);
+
+/* One step of the binomial pyramid, and the low-frequency layer L [4]. `bias` as in reference_code8(), 0: the method.
+ */
+void reference_reduce(struct reference_picture *out, const struct reference_picture *in, double bias);
+void reference_low(struct reference_picture *out, const struct reference_picture *picture, uint32_t level, double bias);
+
+/* Blur weight and tear of one triangle [5]. */
+double reference_weight(const struct reference_grid *grid, const uint32_t v[3], double last_phase,
+						enum engine_blur blur);
+double reference_tear(const struct reference_grid *grid, const uint32_t v[3], double phase, enum engine_blur blur);
+
+/* The split of light [6]: o and l in light, b and e in light. */
+void reference_split(double o, double l, uint32_t n, double *b, double *e);
+
+/* All that compensation depends on besides c, L and w. */
+struct reference_compensation {
+	struct reference_transfer display;
+	uint32_t n;
+	double k;
+	bool off;
+};
+/* Code values in [0, 1], before rounding [6]. */
+void reference_compensate(const struct reference_compensation *compensation, double c, double low, double w,
+						  double *between, double *real);
+
+/* One channel with the UI over it [7], code values in [0, 1], before rounding. */
+double reference_over(double ui, double ui_alpha, double under);
+
+struct reference {
+	uint32_t width, height;
+	bool hold;
+	enum engine_blur blur;
+	uint32_t blur_level;
+	struct reference_timing timing;
+	struct reference_compensation compensation;
+	struct reference_geometry geometry;
+	struct reference_grid grid;
+	double *weight; /* w at each pixel */
+	bool has_ui;
+	struct reference_picture original, ui, low, real, between; /* c, UI, L, E, B */
+};
+
+/* `reference` zeroed or begun before. Frame validated. Aborts without memory: it is a test. */
+void reference_begin(struct reference *reference, const struct frame *frame, const struct engine_params *params,
+					 const struct engine_begin_params *begin);
+void reference_finish(struct reference *reference);
+/* Phase of a request as it counts: NaN 0, -1 to 8; 0 for what is shown undisplaced. */
+double reference_phase(const struct engine_request *request);
+/* Displayed picture, BGRA8, packed, alpha 255. */
+void reference_render(const struct reference *reference, const struct engine_request *request, uint8_t *pixels);
+
+/* calloc that aborts. */
+void *reference_alloc(size_t count, size_t size);
+
+#endif
