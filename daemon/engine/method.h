@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* A method: a way to make displayed frames from a real one. One file each. */
+#ifndef PURSUIT_ENGINE_METHOD_H
+#define PURSUIT_ENGINE_METHOD_H
+
+#include "daemon/engine/state.h"
+
+/* All functions are mandatory and called with the context current, on the engine's thread. */
+struct method {
+	const char *name;
+	const char *description; /* one line */
+	/* Colour and UI are uploaded; the frame's planes are still there. 0 or a negative errno with a sentence. */
+	int (*begin)(struct engine *engine, struct error *error);
+	/* Makes the picture, without UI, and says where it is. */
+	int (*show)(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
+	            struct error *error);
+};
+
+extern const struct method method_hold, method_grid, method_pursuit;
+
+/* By name, NULL: the default. NULL with a sentence that lists all. */
+const struct method *method_find(const char *name, struct error *error);
+
+/* For methods that build upon `grid`. */
+int grid_begin(struct engine *engine, struct error *error);
+int grid_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
+              struct error *error);
+
+#endif

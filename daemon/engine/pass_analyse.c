@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/pass.h"
+
+static const char *prepare(struct engine *engine)
+{
+	return NULL;
+}
+
+static int run(struct engine *engine, struct error *error)
+{
+	struct plan_params params = {
+		.cell = engine->params.cell,
+		.threshold_quarter = engine->params.threshold_quarter,
+		.display_width_mm = engine->params.display_width_mm,
+		.viewing_distance_mm = engine->params.viewing_distance_mm,
+		.last_phase = (float)engine->last_phase,
+		.real_interval_ns = engine->real_interval_ns,
+	};
+	return plan_make(&engine->plan, engine->job.frame, &params, error);
+}
+
+const struct pass pass_analyse = { .name = "analyse", .on_cpu = true, .prepare = prepare, .run = run };

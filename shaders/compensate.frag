@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Real frame and in-between with equal light over N vblanks (Didyk et al. 2010, 5.1 "Gamma Correction",
+ * "Selective Blur"; docs/method.md, 5 and 6). Drawn over the undisplaced triangles, or with WEIGHT_ONE over everything.
+ */
+#include "transfer.glsl"
+#include "low.glsl"
+#include "stretch.glsl"
+
+uniform sampler2D u_picture;
+uniform sampler2D u_level;
+uniform float u_level_scale;
+uniform float u_count; /* N */
+uniform float u_boost; /* k, 0 to 1 */
+
+#ifndef WEIGHT_ONE
+in vec2 v_displaced;
+#endif
+
+layout(location = 0) out vec4 o_real;
+layout(location = 1) out vec4 o_between;
+
+float blur_weight()
+{
+#ifdef WEIGHT_ONE
+	return 1.0;
+#else
+	float stretch = larger_singular_value(dFdx(v_displaced), dFdy(v_displaced));
+	return smoothstep(BLUR_FROM, BLUR_FULL, stretch - 1.0);
+#endif
+}
+
+void main()
+{
+	vec3 code = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb;
+	vec3 low = low_frequency(u_level, floor(gl_FragCoord.xy), u_level_scale);
+	vec3 mixed = mix(code, low, blur_weight());
+#ifdef NO_COMPENSATION
+	o_real = vec4(code, 1.0);
+	o_between = vec4(mixed, 1.0);
+#else
+	vec3 original = to_light(code);
+	vec3 between = min(original, max(to_light(mixed), (u_count * original - 1.0) / (u_count - 1.0)));
+	vec3 gain = original - between;
+	o_real = vec4(from_light(clamp(original + u_boost * (u_count - 1.0) * gain, 0.0, 1.0)), 1.0);
+	o_between = vec4(from_light(clamp(original - u_boost * gain, 0.0, 1.0)), 1.0);
+#endif
+}

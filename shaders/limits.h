@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Constants that C and GLSL share (docs/method.md has them in words). GLSL gets
+ * this text before every shader: preprocessor lines and comments only.
+ */
+#ifndef PURSUIT_SHADERS_LIMITS_H
+#define PURSUIT_SHADERS_LIMITS_H
+
+/* Stretch above 1 where the blur weight w begins and is full (Didyk et al. 2010, 5.1 "Selective Blur"). */
+#define BLUR_FROM 0.25
+#define BLUR_FULL 1.0
+
+/* Stretch above 1 where a tear begins and is complete: nothing but L is shown. */
+#define TEAR_FROM 1.0
+#define TEAR_FULL 2.0
+
+/* Interval between real frames, in seconds, where the boost begins to fade and is gone (Section 2, Bloch's law). */
+#define BLOCH_FROM 0.030
+#define BLOCH_GONE 0.050
+
+/* Depth 1 lies this much in front of the cleared depth buffer, so that the far plane passes LESS. */
+#define DEPTH_SCALE 0.9999
+
+/*
+ * Renderers sample with weights of 8 bits, some of them truncated. Half a step to the right and down
+ * keeps the centre of a pixel that did not move on its own texel.
+ */
+#define SAMPLE_BIAS 0.001953125
+
+/* Vertex attributes. */
+#define ATTRIBUTE_POSITION 0
+#define ATTRIBUTE_DISPLACEMENT 1
+#define ATTRIBUTE_DEPTH 2
+
+/* Texture units. */
+#define UNIT_PICTURE 0
+#define UNIT_LEVEL 1
+
+#endif
