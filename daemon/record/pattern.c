@@ -1,0 +1,128 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/record/pattern.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* The conversion at `at` (which points behind the %): its length without the %, 0 if it is none that we take. */
+static size_t conversion(const char *at, int *width)
+{
+	*width = 0;
+	if (at[0] == 'd')
+		return 1;
+	if (at[0] != '0' || at[1] < '1' || at[1] > '9' || at[2] != 'd')
+		return 0;
+	*width = at[1] - '0';
+	return 3;
+}
+
+/* Where the one conversion is: NULL if there is none or more than one, or one that we do not take. */
+static const char *find_conversion(const char *pattern, size_t *length, int *width)
+{
+	const char *found = NULL;
+	for (const char *at = strchr(pattern, '%'); at; at = strchr(at, '%')) {
+		if (at[1] == '%') {
+			at += 2;
+			continue;
+		}
+		int digits;
+		const size_t bytes = conversion(at + 1, &digits);
+		if (!bytes || found)
+			return NULL;
+		found = at;
+		*length = bytes + 1;
+		*width = digits;
+		at += bytes + 1;
+	}
+	return found;
+}
+
+int pattern_check(const char *option, const char *pattern, struct error *error)
+{
+	size_t length;
+	int width;
+	if (!find_conversion(pattern, &length, &width))
+		return error_set(error, -EINVAL, "%s: pattern '%s': must have exactly one %%d or %%04d, where the number goes",
+						 option, pattern);
+	if (strlen(pattern) > PATTERN_MAX_PATH - 16)
+		return error_set(error, -EINVAL, "%s: pattern is %zu bytes, must be at most %d", option, strlen(pattern),
+						 PATTERN_MAX_PATH - 16);
+	return 0;
+}
+
+/* Copies up to `end` with %% made one %. */
+static char *append(char *to, const char *from, const char *end)
+{
+	while (from < end) {
+		if (*from == '%')
+			from++;
+		*to++ = *from++;
+	}
+	return to;
+}
+
+bool pattern_name(const char *pattern, uint64_t number, char name[PATTERN_MAX_PATH])
+{
+	size_t length;
+	int width;
+	const char *at = find_conversion(pattern, &length, &width);
+	if (!at || strlen(pattern) > PATTERN_MAX_PATH - 16 || number > PATTERN_MAX_NUMBER)
+		return false;
+	char *to = append(name, pattern, at);
+	to += sprintf(to, "%0*" PRIu64, width, number);
+	to = append(to, at + length, at + strlen(at));
+	*to = '\0';
+	return true;
+}
+
+bool pattern_exists(const char *pattern, uint64_t number)
+{
+	char name[PATTERN_MAX_PATH];
+	return pattern_name(pattern, number, name) && access(name, F_OK) == 0;
+}
+
+/* The number in a file name, if the pattern yields exactly that name for it. */
+static bool match(const char *pattern, const char *folder, size_t prefix, const char *entry, uint64_t *number)
+{
+	char path[PATTERN_MAX_PATH + 256], name[PATTERN_MAX_PATH];
+	const int length = snprintf(path, sizeof(path), "%s%s", folder, entry);
+	if (length < 0 || (size_t)length <= prefix || path[prefix] < '0' || path[prefix] > '9')
+		return false;
+	errno = 0;
+	*number = strtoull(path + prefix, NULL, 10);
+	return errno == 0 && pattern_name(pattern, *number, name) && strcmp(name, path) == 0;
+}
+
+int pattern_range(const char *pattern, uint64_t *first, uint64_t *last, struct error *error)
+{
+	size_t length;
+	int width;
+	char folder[PATTERN_MAX_PATH], start[PATTERN_MAX_PATH];
+	const char *at = find_conversion(pattern, &length, &width);
+	const char *slash = strrchr(pattern, '/');
+	bool found = false;
+
+	if (!at || strlen(pattern) > PATTERN_MAX_PATH - 16 || (slash && slash > at))
+		return error_set(error, -EINVAL, "%s: numbered folders cannot be searched: give --first and --last", pattern);
+	*append(folder, pattern, slash ? slash + 1 : pattern) = '\0';
+	const size_t prefix = (size_t)(append(start, pattern, at) - start);
+	DIR *dir = opendir(folder[0] ? folder : ".");
+	if (!dir)
+		return error_set(error, -errno, "%s: folder cannot be read: %s", folder[0] ? folder : ".", strerror(errno));
+	for (struct dirent *entry; (entry = readdir(dir));) {
+		uint64_t number;
+		if (!match(pattern, folder, prefix, entry->d_name, &number))
+			continue;
+		*first = !found || number < *first ? number : *first;
+		*last = !found || number > *last ? number : *last;
+		found = true;
+	}
+	closedir(dir);
+	return found ? 0 : error_set(error, -ENOENT, "%s: no such file with any number: check the pattern", pattern);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Names of numbered files, 'c_%04d.png'. A pattern comes from a command line,
+ * so it is checked and filled in here and never reaches printf.
+ */
+#ifndef PURSUIT_PATTERN_H
+#define PURSUIT_PATTERN_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "daemon/error.h"
+
+#define PATTERN_MAX_PATH 4096
+#define PATTERN_MAX_NUMBER 999999999u
+
+/*
+ * Exactly one %d or %0Nd (N is 1 to 9); %% stands for a percent sign. 0 or
+ * -EINVAL with a sentence that names `option`.
+ */
+int pattern_check(const char *option, const char *pattern, struct error *error);
+
+/* The name for a number, of a pattern that was checked; false if it is too long for a path. */
+bool pattern_name(const char *pattern, uint64_t number, char name[PATTERN_MAX_PATH]);
+
+bool pattern_exists(const char *pattern, uint64_t number);
+
+/* Lowest and highest number of which there is a file. 0 or a negative errno with a sentence. */
+int pattern_range(const char *pattern, uint64_t *first, uint64_t *last, struct error *error);
+
+#endif
