@@ -23,12 +23,6 @@
 /* Depth 1 lies this much in front of the cleared depth buffer, so that the far plane passes LESS. */
 #define DEPTH_SCALE 0.9999
 
-/*
- * Renderers sample with weights of 8 bits, some of them truncated. Half a step to the right and down
- * keeps the centre of a pixel that did not move on its own texel.
- */
-#define SAMPLE_BIAS 0.001953125
-
 /* Vertex attributes. */
 #define ATTRIBUTE_POSITION 0
 #define ATTRIBUTE_DISPLACEMENT 1

@@ -22,7 +22,7 @@ out vec4 o_color;
 
 void main()
 {
-	vec3 color = texture(u_picture, (v_source + SAMPLE_BIAS) / u_size).rgb;
+	vec3 color = texture(u_picture, v_source / u_size).rgb;
 #ifdef TEAR
 	/* These are the columns of the inverse map; its larger singular value over its determinant is the stretch. */
 	vec2 dx = dFdx(v_source);
