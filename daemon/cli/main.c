@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* pursuit: the command. A table of verbs, each in a file of its own. */
+
+#include <stdio.h>
+#include <string.h>
+
+#include "args.h"
+#include "client/pursuit.h"
+#include "verbs.h"
+
+struct verb {
+	const char *name;
+	int (*run)(int argc, char **argv);
+	const char *help;
+};
+
+static const struct verb verbs[] = {
+	{"record", verb_record, "write a built-in scene, or what a running daemon receives, into a recording"},
+	{"replay", verb_replay, "play a recording headless and deterministically, score it, compare it"},
+	{"import", verb_import, "make a recording from sequences of images"},
+	{"export", verb_export, "write the frames of a recording as images or video"},
+	{"status", verb_status, "say what a running daemon does"},
+	{NULL, NULL, NULL},
+};
+
+static void print_help(FILE *out)
+{
+	fprintf(out, "usage: pursuit VERB [arguments]\n\n"
+	             "Pursuit turns 30 to 60 rendered frames a second into a steady 120 Hz picture.\n\nverbs\n");
+	for (const struct verb *verb = verbs; verb->name; verb++)
+		fprintf(out, "  %-10s  %s\n", verb->name, verb->help);
+	fprintf(out, "\n`pursuit VERB --help` explains one, with examples. `pursuit --version` names the version.\n");
+}
+
+static int unknown_verb(const char *name)
+{
+	const char *nearest = NULL;
+	unsigned least = 4;
+	for (const struct verb *verb = verbs; verb->name; verb++) {
+		unsigned distance = args_distance(name, verb->name);
+		if (distance < least) {
+			least = distance;
+			nearest = verb->name;
+		}
+	}
+	fprintf(stderr, "pursuit: there is no verb %s%s%s%s\nTry `pursuit --help`.\n", name,
+	        nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
+	return STATUS_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+	if (argc < 2) {
+		print_help(stderr);
+		return STATUS_USAGE;
+	}
+	if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
+		print_help(stdout);
+		return STATUS_DONE;
+	}
+	if (strcmp(argv[1], "--version") == 0) {
+		printf("pursuit %d.%d.%d\n", PURSUIT_VERSION_MAJOR, PURSUIT_VERSION_MINOR, PURSUIT_VERSION_PATCH);
+		return STATUS_DONE;
+	}
+	for (const struct verb *verb = verbs; verb->name; verb++) {
+		if (strcmp(verb->name, argv[1]) == 0)
+			return verb->run(argc - 1, argv + 1);
+	}
+	return unknown_verb(argv[1]);
+}

@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "record_daemon.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "args.h"
+#include "control.h"
+#include "interrupt.h"
+
+#define VERB "record"
+#define STEP_NS 50000000L
+
+static void wait_until_over(double seconds)
+{
+	struct timespec step = {0, STEP_NS};
+	double passed = 0;
+	struct timespec start, now;
+	clock_gettime(CLOCK_MONOTONIC, &start);
+	while (!interrupt_seen() && (seconds <= 0 || passed < seconds)) {
+		nanosleep(&step, NULL);
+		clock_gettime(CLOCK_MONOTONIC, &now);
+		passed = (double)(now.tv_sec - start.tv_sec) + (double)(now.tv_nsec - start.tv_nsec) / 1e9;
+	}
+}
+
+static json_int_t number_of(const json_t *reply, const char *name)
+{
+	return json_integer_value(json_object_get(reply, name));
+}
+
+/* Asks for the end and says what there is. */
+static int stop(struct control *control, const char *path, struct error *error)
+{
+	json_t *reply = NULL;
+	int result = control_ask(control, "record-stop", -1, &reply, error);
+	if (result < 0)
+		return result;
+	json_int_t frames = number_of(reply, "frames_written"), dropped = number_of(reply, "frames_dropped");
+	printf("%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", path, frames, (double)number_of(reply, "bytes_written") / 1e6);
+	if (dropped)
+		printf(", %" JSON_INTEGER_FORMAT " frames dropped because the disk was slower", dropped);
+	printf("\n");
+	if (frames == 0)
+		fprintf(stderr, "pursuit record: no frame came; does a client run? `pursuit status` says\n");
+	json_decref(reply);
+	return 0;
+}
+
+int record_daemon(const char *path, const char *socket, double seconds)
+{
+	struct control control;
+	struct error error = {{0}};
+	if (control_open(&control, socket, &error) < 0)
+		return args_failed(VERB, "%s. A scene needs none: pursuit record %s --scene colonnade", error.text, path);
+	int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), result;
+	if (fd < 0) {
+		result = error_set(&error, -errno, "%s: %s", path, strerror(errno));
+	} else {
+		interrupt_watch();
+		result = control_ask(&control, "record", fd, NULL, &error);
+		close(fd);
+		if (result == 0) {
+			if (isatty(STDERR_FILENO))
+				fprintf(stderr, "recording until %s\n", seconds > 0 ? "the time is over, or Ctrl-C" : "Ctrl-C");
+			wait_until_over(seconds);
+			result = stop(&control, path, &error);
+		}
+	}
+	control_close(&control);
+	return result < 0 ? args_failed(VERB, "%s", error.text) : STATUS_DONE;
+}

@@ -1,0 +1,11 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* `pursuit record` without a scene: asks a running daemon to record what it receives. */
+#ifndef PURSUIT_CLI_RECORD_DAEMON_H
+#define PURSUIT_CLI_RECORD_DAEMON_H
+
+/* seconds 0: until Ctrl-C. socket NULL: the usual one. Gives the exit status back. */
+int record_daemon(const char *path, const char *socket, double seconds);
+
+#endif

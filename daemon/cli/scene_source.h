@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * A built-in scene as a source of real frames and of truth, in a GL context of
+ * its own. One thread; makes its context current in every call that renders.
+ */
+#ifndef PURSUIT_CLI_SCENE_SOURCE_H
+#define PURSUIT_CLI_SCENE_SOURCE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "args.h"
+#include "client/scenes/scene.h"
+#include "daemon/error.h"
+#include "daemon/frame.h"
+
+/* The moment of frame 0 in recordings: not 0, which would mean unknown. */
+#define SCENE_SOURCE_EPOCH_NS UINT64_C(1000000000)
+
+/* Only name, size and rate must be set. */
+struct scene_source_params {
+	const char *scene;
+	struct arg_size size;
+	struct arg_rate rate;
+	bool forward;           /* forward motion instead of backward */
+	uint32_t color_format;  /* PURSUIT_FORMAT_*; 0: BGRA8 */
+	uint32_t depth_format;  /* 0: DEPTH32F */
+	uint32_t motion_format; /* 0: RG16F */
+	bool object_id;
+};
+
+struct scene_source;
+
+/* NULL with a sentence. */
+struct scene_source *scene_source_create(const struct scene_source_params *params, struct error *error);
+void scene_source_destroy(struct scene_source **source);
+
+/* Real frame `index` (id index + 1). Its planes belong to the source, valid until the next call. False: GL failed. */
+bool scene_source_frame(struct scene_source *source, uint64_t index, struct frame *frame);
+
+/* The truth at a moment, in seconds: BGRA8 with the UI over it, packed rows, alpha 255, into width x height x 4 bytes. */
+bool scene_source_truth(struct scene_source *source, double time, uint8_t *picture);
+
+/* Nanoseconds from frame 0 to frame `index` at a rate, rounded down; exact. */
+uint64_t scene_source_time(const struct arg_rate *rate, uint64_t index);
+
+/* "there is no scene x; there are a, b, c" */
+void scene_source_unknown(const char *name, struct error *error);
+
+#endif
