@@ -213,7 +213,7 @@ static void build(struct scene *scene, struct mesh *mesh)
 
 static double walked(double time)
 {
-	return 1.9 * time;
+	return 3.0 * time;
 }
 
 static void plan(const struct scene *scene, double time, struct stage_plan *out)

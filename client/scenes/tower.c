@@ -179,7 +179,7 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 
 static void pose(const struct scene *scene, double time, const struct stage_plan *out, struct stage_pose *pose)
 {
-	double angle = 2.0 * SCENE_PI * scene_phase(time, 30.0);
+	double angle = 2.0 * SCENE_PI * scene_phase(time, 20.0);
 	double distance = 15.5 + 2.5 * scene_wave(time, 19.0, 0.0), height = 4.6 + 2.4 * scene_wave(time, 23.0, 0.0);
 	struct vec3 eye = vec3(distance * sin(angle), height, distance * cos(angle));
 	pose->view = mat4_look_at(eye, vec3(0, height + 3.6 + 1.0 * scene_wave(time, 17.0, 0.2), 0));
