@@ -58,7 +58,7 @@ double reference_depth(uint32_t kind, double near_distance, double far_distance,
 		else if (near_distance > 0.0 && far_distance > near_distance)
 			z = (value - near_distance) / (far_distance - near_distance);
 		else
-			z = value <= 0.0 ? 0.0 : value / (1.0 + value);
+			z = value / (1.0 + value);
 		break;
 	default:
 		return z;

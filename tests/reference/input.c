@@ -346,7 +346,7 @@ void input_make(struct input *input, const struct input_spec *spec)
 
 float input_display_mm(uint32_t width)
 {
-	return 0.27f * (float)width;
+	return width < 4 ? 1.0f : 0.27f * (float)width;
 }
 
 void input_finish(struct input *input)

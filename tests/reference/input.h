@@ -66,7 +66,7 @@ void input_finish(struct input *input);
 
 /*
  * A display on which these small pictures have pixels of common size (0.27 mm),
- * so that motion of tens of pixels is not damped away as untrackable.
+ * and at least 1 mm as the engine demands, so that motion of tens of pixels is not damped away as untrackable.
  */
 float input_display_mm(uint32_t width);
 
