@@ -8,7 +8,7 @@
 
 enum plan_slot {
 	SLOT_UNKNOWN = 0,
-	SLOT_STILL,  /* u is 0 all over */
+	SLOT_STILL, /* u is 0 all over */
 	SLOT_MOVES,
 };
 
@@ -32,10 +32,10 @@ void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uin
 	motion->width = motion->rows.colour_width;
 	motion->height = motion->rows.colour_height;
 	motion->invalid = 0;
-	motion->u.ring = cell + 1;
-	motion->u.stride = (motion->width + 16) / 16 * 16;
-	motion->u.ux = plan_arena_take(arena, motion->u.ring * motion->u.stride * sizeof(float));
-	motion->u.uy = plan_arena_take(arena, motion->u.ring * motion->u.stride * sizeof(float));
+	motion->ring = cell + 1;
+	motion->stride = (motion->width + 16) / 16 * 16;
+	motion->ux = plan_arena_take(arena, motion->ring * motion->stride * sizeof(float));
+	motion->uy = plan_arena_take(arena, motion->ring * motion->stride * sizeof(float));
 	motion->decoded = plan_arena_take(arena, 2 * (size_t)motion->width * sizeof(float));
 	memset(motion->slots, SLOT_UNKNOWN, sizeof(motion->slots));
 }
@@ -47,31 +47,31 @@ static bool is_zero(const struct plan_motion *motion, uint32_t y)
 		return false;
 	size_t words = (size_t)motion->rows.width * motion->rows.pixel_bytes / 4;
 	return !motion->kernels->any_bits((const uint32_t *)(const void *)row, words,
-	                                  motion->half ? 0x7fff7fffu : 0x7fffffffu);
+									  motion->half ? 0x7fff7fffu : 0x7fffffffu);
 }
 
 static void clear(struct plan_motion *motion, uint32_t slot)
 {
 	if (motion->slots[slot] == SLOT_STILL)
 		return;
-	memset(motion->u.ux + slot * motion->u.stride, 0, motion->u.stride * sizeof(float));
-	memset(motion->u.uy + slot * motion->u.stride, 0, motion->u.stride * sizeof(float));
+	memset(motion->ux + slot * motion->stride, 0, motion->stride * sizeof(float));
+	memset(motion->uy + slot * motion->stride, 0, motion->stride * sizeof(float));
 	motion->slots[slot] = SLOT_STILL;
 }
 
 static void repeat(struct plan_motion *motion, uint32_t slot)
 {
-	uint32_t last = (slot ? slot : motion->u.ring) - 1;
-	size_t stride = motion->u.stride;
-	memcpy(motion->u.ux + slot * stride, motion->u.ux + last * stride, stride * sizeof(float));
-	memcpy(motion->u.uy + slot * stride, motion->u.uy + last * stride, stride * sizeof(float));
+	uint32_t last = (slot ? slot : motion->ring) - 1;
+	size_t stride = motion->stride;
+	memcpy(motion->ux + slot * stride, motion->ux + last * stride, stride * sizeof(float));
+	memcpy(motion->uy + slot * stride, motion->uy + last * stride, stride * sizeof(float));
 	motion->slots[slot] = motion->slots[last];
 }
 
 void plan_motion_load(struct plan_motion *motion, uint32_t y)
 {
 	const struct plan_kernels *kernels = motion->kernels;
-	uint32_t slot = y % motion->u.ring, width = motion->width;
+	uint32_t slot = y % motion->ring, width = motion->width;
 	if (y >= motion->height) {
 		repeat(motion, slot);
 		return;
@@ -80,11 +80,12 @@ void plan_motion_load(struct plan_motion *motion, uint32_t y)
 		clear(motion, slot);
 		return;
 	}
+	plan_rows_expect_row(&motion->rows, y + 1);
 	const void *raw = plan_rows_get(&motion->rows, y);
 	if (motion->half)
 		kernels->decode_half(raw, 2 * (size_t)width, motion->decoded);
 	const float *motions = motion->half ? motion->decoded : raw;
-	float *ux = motion->u.ux + slot * motion->u.stride, *uy = motion->u.uy + slot * motion->u.stride;
+	float *ux = motion->ux + slot * motion->stride, *uy = motion->uy + slot * motion->stride;
 	uint32_t seen = kernels->scale_row(motions, width, &motion->scale, ux, uy);
 	if (seen & PLAN_ROW_ODD)
 		seen = kernels->careful_row(motions, width, &motion->scale, ux, uy, &motion->invalid);
@@ -95,5 +96,17 @@ void plan_motion_load(struct plan_motion *motion, uint32_t y)
 
 bool plan_motion_moves(const struct plan_motion *motion, uint32_t y)
 {
-	return motion->slots[y % motion->u.ring] == SLOT_MOVES;
+	return motion->slots[y % motion->ring] == SLOT_MOVES;
+}
+
+struct plan_field plan_motion_field(const struct plan_motion *motion, uint32_t y)
+{
+	struct plan_field field;
+	uint32_t slot = y % motion->ring;
+	for (uint32_t j = 0; j < motion->ring; j++) {
+		field.ux[j] = motion->ux + slot * motion->stride;
+		field.uy[j] = motion->uy + slot * motion->stride;
+		slot = slot + 1 < motion->ring ? slot + 1 : 0;
+	}
+	return field;
 }

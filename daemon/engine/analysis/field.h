@@ -8,16 +8,16 @@
 #include "daemon/engine/analysis/levels.h"
 #include "daemon/engine/analysis/rows.h"
 
-#define PLAN_MAX_CELL 64u
-
 struct plan_motion {
 	const struct plan_kernels *kernels;
 	struct plan_rows rows;
 	bool half; /* RG16F, else RG32F */
 	struct plan_scale scale;
 	uint32_t width, height; /* of colour */
-	struct plan_field u;
-	float *decoded; /* a row of motion as floats, when half */
+	float *ux, *uy;         /* row y of u at slot y % ring, `stride` apart */
+	size_t stride;
+	uint32_t ring;
+	float *decoded;                   /* a row of motion as floats, when half */
 	uint8_t slots[PLAN_MAX_CELL + 1]; /* what each slot holds, enum plan_slot */
 	uint64_t invalid;
 };
@@ -34,14 +34,7 @@ void plan_motion_load(struct plan_motion *motion, uint32_t y);
 /* Is any u of row y, in its slot, not 0? */
 bool plan_motion_moves(const struct plan_motion *motion, uint32_t y);
 
-static inline const float *plan_field_x(const struct plan_field *field, uint32_t y)
-{
-	return field->ux + y % field->ring * field->stride;
-}
-
-static inline const float *plan_field_y(const struct plan_field *field, uint32_t y)
-{
-	return field->uy + y % field->ring * field->stride;
-}
+/* The rows from y on, all in the ring. */
+struct plan_field plan_motion_field(const struct plan_motion *motion, uint32_t y);
 
 #endif

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daemon/engine/analysis/depth.h"
+#include "daemon/engine/analysis/values.h"
 
 static float lesser(float a, float b)
 {
@@ -31,8 +31,9 @@ static struct plan_depth depth_of(const struct pursuit_frame_header *header)
 {
 	int index = plan_find_plane(header, PURSUIT_ROLE_DEPTH);
 	float near_distance = header->near_distance, far_distance = header->far_distance;
-	struct plan_depth depth = {.format = index < 0 ? 0 : header->planes[index].format, .near_distance = near_distance,
-	                           .range = far_distance - near_distance};
+	struct plan_depth depth = {.format = index < 0 ? 0 : header->planes[index].format,
+							   .near_distance = near_distance,
+							   .range = far_distance - near_distance};
 	if (header->depth_kind == PURSUIT_DEPTH_DEVICE_REVERSED)
 		depth.map = PLAN_DEPTH_REVERSED;
 	else if (header->depth_kind != PURSUIT_DEPTH_LINEAR)
@@ -64,7 +65,7 @@ static void fill_columns(struct plan_grid *grid, uint32_t cell)
 }
 
 void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t cell, uint32_t threshold,
-                    struct plan_arena *arena)
+					struct plan_arena *arena)
 {
 	size_t width = grid->plan->width;
 	grid->cells_x = (grid->plan->width + cell - 1) / cell;
@@ -77,6 +78,8 @@ void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t 
 	grid->depth = depth_of(&frame->header);
 	grid->peaks = plan_arena_take(arena, width * sizeof(float));
 	grid->largest = plan_arena_take(arena, columns * sizeof(float));
+	grid->snaps = plan_arena_take(arena, columns * sizeof(uint32_t));
+	grid->found = plan_arena_take(arena, columns * sizeof(uint32_t));
 	grid->centres = plan_arena_take(arena, columns * sizeof(float));
 	grid->first = plan_arena_take(arena, columns * sizeof(uint32_t));
 	grid->second = plan_arena_take(arena, columns * sizeof(uint32_t));
@@ -227,20 +230,6 @@ static void read_middle(struct plan_grid *grid, uint32_t j0, uint32_t j1)
 		grid->z[i] = lesser(grid->z[i], grid->z_second[i]);
 }
 
-static struct plan_vertex_row *start_cell_row(struct plan_grid *grid, uint32_t r)
-{
-	uint32_t cell = grid->plan->cell, start = r * cell, size = extent(start, cell, grid->plan->height), j0, j1;
-	middle(start, size, &j0, &j1);
-	read_middle(grid, j0, j1);
-	return start_row(grid, (float)start + 0.5f * (float)size, grid->z_second);
-}
-
-void plan_grid_still_row(struct plan_grid *grid, uint32_t r)
-{
-	start_cell_row(grid, r);
-	put_row(grid);
-}
-
 /* Largest k with k / 4 <= g, at most 63: exact, since k² and 16 g² are. */
 static uint32_t quantised(float square)
 {
@@ -260,15 +249,8 @@ static float pixel_depth(const struct plan_grid *grid, uint32_t x, uint32_t y)
 }
 
 struct side {
-	uint32_t x, y;
 	float ux, uy, z;
 };
-
-static struct side side_at(const struct plan_grid *grid, uint32_t x, uint32_t y)
-{
-	const struct plan_field *u = &grid->motion->u;
-	return (struct side){x, y, plan_field_x(u, y)[x], plan_field_y(u, y)[x], pixel_depth(grid, x, y)};
-}
 
 static bool nearer(const struct side *a, const struct side *b)
 {
@@ -277,18 +259,37 @@ static bool nearer(const struct side *a, const struct side *b)
 	return a->ux * a->ux + a->uy * a->uy > b->ux * b->ux + b->uy * b->uy;
 }
 
-/* Puts the vertex of a cell on its strongest discontinuity. */
-static void snap(struct plan_grid *grid, struct plan_vertex_row *row, uint32_t c, const struct plan_cell *cell)
+/* Cell row in work. */
+struct band {
+	uint32_t start, size; /* rows of pixels */
+	uint32_t j0, j1;      /* its middle ones */
+	struct plan_field u;
+};
+
+static struct band band_of(const struct plan_grid *grid, uint32_t r)
 {
-	const struct plan_field *u = &grid->motion->u;
-	uint32_t k = quantised(grid->largest[c]);
-	uint32_t found = grid->kernels->locate(u, cell, (float)(k * k) / 16.0f);
-	uint32_t x = cell->x + found % 64, y = cell->y + found / 64;
-	const float *ux = plan_field_x(u, y), *uy = plan_field_y(u, y);
-	float dx = ux[x + 1] - ux[x], dy = uy[x + 1] - uy[x];
-	float down_x = plan_field_x(u, y + 1)[x] - ux[x], down_y = plan_field_y(u, y + 1)[x] - uy[x];
-	bool across = dx * dx + dy * dy >= down_x * down_x + down_y * down_y;
-	struct side self = side_at(grid, x, y), other = side_at(grid, x + across, y + !across);
+	uint32_t cell = grid->plan->cell;
+	struct band band = {.start = r * cell, .size = extent(r * cell, cell, grid->plan->height)};
+	middle(band.start, band.size, &band.j0, &band.j1);
+	return band;
+}
+
+static bool is_across(const struct plan_field *u, uint32_t x, uint32_t j)
+{
+	float dx = u->ux[j][x + 1] - u->ux[j][x], dy = u->uy[j][x + 1] - u->uy[j][x];
+	float down_x = u->ux[j + 1][x] - u->ux[j][x], down_y = u->uy[j + 1][x] - u->uy[j][x];
+	return dx * dx + dy * dy >= down_x * down_x + down_y * down_y;
+}
+
+/* Puts the vertex of a cell on its strongest discontinuity: between pixel (x, start + j) and the next. */
+static void snap(struct plan_grid *grid, const struct band *band, uint32_t c, uint32_t x, uint32_t j)
+{
+	const struct plan_field *u = &band->u;
+	struct plan_vertex_row *row = &grid->ring[grid->row % 2];
+	uint32_t y = band->start + j, across = is_across(u, x, j), down = !across;
+	struct side self = {u->ux[j][x], u->uy[j][x], pixel_depth(grid, x, y)};
+	struct side other = {u->ux[j + down][x + across], u->uy[j + down][x + across],
+						 pixel_depth(grid, x + across, y + down)};
 	const struct side *side = nearer(&other, &self) ? &other : &self;
 	row->x[c + 1] = (float)x + (across ? 1.0f : 0.5f);
 	row->y[c + 1] = (float)y + (across ? 0.5f : 1.0f);
@@ -298,12 +299,32 @@ static void snap(struct plan_grid *grid, struct plan_vertex_row *row, uint32_t c
 	row->snapped[c + 1] = 1;
 }
 
-/* u of vertices that do not snap. */
-static void put_means(const struct plan_grid *grid, struct plan_vertex_row *row, uint32_t j0, uint32_t j1)
+/* Looks for all first, so that the depths are on their way when they are needed. */
+static void snap_cells(struct plan_grid *grid, const struct band *band)
 {
-	const struct plan_field *u = &grid->motion->u;
-	const float *upper_x = plan_field_x(u, j0), *upper_y = plan_field_y(u, j0);
-	const float *lower_x = plan_field_x(u, j1), *lower_y = plan_field_y(u, j1);
+	uint32_t cell = grid->plan->cell, count = 0;
+	for (uint32_t c = 0; c < grid->cells_x; c++) {
+		if (grid->largest[c] < grid->least)
+			continue;
+		struct plan_cell at = {c * cell, extent(c * cell, cell, grid->plan->width), band->size};
+		uint32_t k = quantised(grid->largest[c]);
+		uint32_t found = grid->kernels->locate(&band->u, &at, (float)(k * k) / 16.0f);
+		if (grid->rows.data)
+			plan_rows_expect(&grid->rows, at.x + found % 64, band->start + found / 64);
+		grid->snaps[count] = c;
+		grid->found[count++] = found;
+	}
+	for (uint32_t i = 0; i < count; i++)
+		snap(grid, band, grid->snaps[i], grid->snaps[i] * cell + grid->found[i] % 64, grid->found[i] / 64);
+	grid->plan->snapped += count;
+}
+
+/* u of vertices that do not snap. */
+static void put_means(struct plan_grid *grid, const struct band *band)
+{
+	struct plan_vertex_row *row = &grid->ring[grid->row % 2];
+	const float *upper_x = band->u.ux[band->j0 - band->start], *upper_y = band->u.uy[band->j0 - band->start];
+	const float *lower_x = band->u.ux[band->j1 - band->start], *lower_y = band->u.uy[band->j1 - band->start];
 	for (uint32_t c = 0; c < grid->cells_x; c++) {
 		uint32_t i0 = grid->first[c], i1 = grid->second[c];
 		row->ux[c + 1] = ((upper_x[i0] + lower_x[i0]) + (upper_x[i1] + lower_x[i1])) * 0.25f;
@@ -311,35 +332,29 @@ static void put_means(const struct plan_grid *grid, struct plan_vertex_row *row,
 	}
 }
 
-static void find_peaks(struct plan_grid *grid, uint32_t start, uint32_t size)
+static void start_cell_row(struct plan_grid *grid, const struct band *band)
 {
-	const struct plan_motion *motion = grid->motion;
-	uint32_t width = grid->plan->width;
-	memset(grid->peaks, 0, width * sizeof(float));
-	for (uint32_t y = start; y < start + size; y++) {
-		if (!plan_motion_moves(motion, y) && !plan_motion_moves(motion, y + 1))
-			continue;
-		grid->kernels->gradient_row(plan_field_x(&motion->u, y), plan_field_y(&motion->u, y),
-		                            plan_field_x(&motion->u, y + 1), plan_field_y(&motion->u, y + 1), width, grid->peaks);
-	}
-	grid->kernels->cell_peaks(grid->peaks, width, grid->plan->cell, grid->largest);
+	read_middle(grid, band->j0, band->j1);
+	start_row(grid, (float)band->start + 0.5f * (float)band->size, grid->z_second);
+}
+
+void plan_grid_still_row(struct plan_grid *grid, uint32_t r)
+{
+	struct band band = band_of(grid, r);
+	start_cell_row(grid, &band);
+	put_row(grid);
 }
 
 void plan_grid_moving_row(struct plan_grid *grid, uint32_t r)
 {
-	uint32_t cell = grid->plan->cell, start = r * cell, size = extent(start, cell, grid->plan->height), j0, j1;
-	struct plan_vertex_row *row = start_cell_row(grid, r);
-	middle(start, size, &j0, &j1);
-	row->still = false;
-	put_means(grid, row, j0, j1);
-	find_peaks(grid, start, size);
-	for (uint32_t c = 0; c < grid->cells_x; c++) {
-		if (grid->largest[c] < grid->least)
-			continue;
-		struct plan_cell at = {c * cell, start, extent(c * cell, cell, grid->plan->width), size};
-		snap(grid, row, c, &at);
-		grid->plan->snapped++;
-	}
+	struct band band = band_of(grid, r);
+	band.u = plan_motion_field(grid->motion, band.start);
+	start_cell_row(grid, &band);
+	grid->ring[grid->row % 2].still = false;
+	put_means(grid, &band);
+	grid->kernels->band_peaks(&band.u, band.size, grid->plan->width, grid->peaks);
+	grid->kernels->cell_peaks(grid->peaks, grid->plan->width, grid->plan->cell, grid->largest);
+	snap_cells(grid, &band);
 	put_row(grid);
 }
 

@@ -12,10 +12,12 @@ struct plan_grid {
 	struct plan *plan;
 	const struct plan_motion *motion;
 	uint32_t cells_x, cells_y;
-	float least;   /* g² of q_min */
-	float *peaks;   /* g² by column of pixels */
-	float *largest; /* g² by cell */
-	float *centres; /* x of the centres of cells */
+	float least;              /* g² of q_min */
+	float *peaks;             /* g² by column of pixels */
+	float *largest;           /* g² by cell */
+	uint32_t *snaps;          /* cells of the row in work that snap, and */
+	uint32_t *found;          /* where: row << 6 | column in the cell */
+	float *centres;           /* x of the centres of cells */
 	uint32_t *first, *second; /* i0 and i1 of the cells */
 	/* depth */
 	struct plan_rows rows; /* without data: z is 0.5 */
@@ -28,7 +30,7 @@ struct plan_grid {
 };
 
 void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t cell, uint32_t threshold,
-                    struct plan_arena *arena);
+					struct plan_arena *arena);
 
 /* The row of vertices on the picture's upper border; makes room in the plan. 0 or -ENOMEM. */
 int plan_grid_begin(struct plan_grid *grid);

@@ -4,7 +4,9 @@
 /*
  * The kernels' code, compiled once per level by the level_*.c that include it.
  * Each defines LEVEL_KERNELS (the table's name), LEVEL_NAME and, above this
- * include, decode_half_some(): decodes a multiple of its own width and says how many.
+ * include, decode_half_some(), which decodes a multiple of its own width and
+ * says how many, the vector type wide (of floats, aligned to 4 bytes) and
+ * wide_larger(): the larger of numbers that are not NaN.
  *
  * Loops are written for the vectoriser: no branches, no reductions of floats
  * (of the bits of numbers that are not negative instead, which sort alike).
@@ -13,9 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "daemon/engine/analysis/depth.h"
-
-#define MAX_CELL 64u
+#include "daemon/engine/analysis/values.h"
 
 static bool any_bits(const uint32_t *words, size_t count, uint32_t mask)
 {
@@ -31,25 +31,14 @@ static bool any_bits(const uint32_t *words, size_t count, uint32_t mask)
 	return false;
 }
 
-/* Exact, without float denormals, so that the mode of the FPU does not matter. */
-static inline float half_value(uint32_t half)
-{
-	uint32_t exponent = half & 0x7c00u;
-	uint32_t shifted = (half & 0x7fffu) << 13;
-	uint32_t normal = shifted + (112u << 23) + (exponent == 0x7c00u ? 112u << 23 : 0u);
-	float tiny = plan_float_of(shifted + (113u << 23)) - plan_float_of(113u << 23);
-	uint32_t bits = exponent == 0 ? plan_bits_of(tiny) : normal;
-	return plan_float_of(bits | (half & 0x8000u) << 16);
-}
-
 static void decode_half(const uint16_t *restrict halves, size_t count, float *restrict values)
 {
 	for (size_t i = decode_half_some(halves, count, values); i < count; i++)
-		values[i] = half_value(halves[i]);
+		values[i] = plan_half_value(halves[i]);
 }
 
 static uint32_t scale_row(const float *restrict motion, size_t count, const struct plan_scale *scale,
-                          float *restrict ux, float *restrict uy)
+						  float *restrict ux, float *restrict uy)
 {
 	const float ratio = scale->ratio, limit = scale->plain_squared;
 	uint32_t any = 0, odd = 0;
@@ -86,7 +75,7 @@ static inline uint32_t is_finite(float value)
 }
 
 static uint32_t careful_row(const float *restrict motion, size_t count, const struct plan_scale *scale,
-                            float *restrict ux, float *restrict uy, uint64_t *invalid)
+							float *restrict ux, float *restrict uy, uint64_t *invalid)
 {
 	const float ratio = scale->ratio, degrees = scale->degrees;
 	uint32_t any = 0, numbers = 0;
@@ -119,12 +108,31 @@ static inline float gradient(const float *ux, const float *uy, const float *belo
 	return gx > gy ? gx : gy;
 }
 
-static void gradient_row(const float *restrict ux, const float *restrict uy, const float *restrict below_x,
-                         const float *restrict below_y, size_t count, float *restrict peaks)
+#define LANES (sizeof(wide) / sizeof(float))
+#define LOAD(from) (*(const wide *)(const void *)(from))
+
+/* Down the columns, so that each row is loaded once. */
+static void band_peaks(const struct plan_field *field, uint32_t rows, size_t count, float *restrict peaks)
 {
-	for (size_t i = 0; i < count; i++) {
-		float g = gradient(ux, uy, below_x, below_y, i);
-		peaks[i] = g > peaks[i] ? g : peaks[i];
+	size_t i = 0;
+	for (; i + LANES <= count; i += LANES) {
+		wide ux = LOAD(field->ux[0] + i), uy = LOAD(field->uy[0] + i), peak = ux - ux;
+		for (uint32_t j = 0; j < rows; j++) {
+			wide below_x = LOAD(field->ux[j + 1] + i), below_y = LOAD(field->uy[j + 1] + i);
+			wide dx = LOAD(field->ux[j] + i + 1) - ux, dy = LOAD(field->uy[j] + i + 1) - uy;
+			wide down_x = below_x - ux, down_y = below_y - uy;
+			peak = wide_larger(peak, wide_larger(dx * dx + dy * dy, down_x * down_x + down_y * down_y));
+			ux = below_x;
+			uy = below_y;
+		}
+		memcpy(peaks + i, &peak, sizeof(peak));
+	}
+	for (; i < count; i++) {
+		peaks[i] = 0;
+		for (uint32_t j = 0; j < rows; j++) {
+			float g = gradient(field->ux[j], field->uy[j], field->ux[j + 1], field->uy[j + 1], i);
+			peaks[i] = g > peaks[i] ? g : peaks[i];
+		}
 	}
 }
 
@@ -150,39 +158,70 @@ static void cell_peaks(const float *restrict peaks, size_t count, uint32_t cell,
 }
 
 /* Keys sort by distance from the centre (in half pixels, squared), then by row, then by column. */
-static inline uint32_t locate_in(const struct plan_field *field, const struct plan_cell *cell, uint32_t width,
-                                 float least)
+#define KEY_SCALE 4096
+#define KEY_NONE INT32_MAX
+
+static inline int32_t key_part(uint32_t i, uint32_t size)
 {
-	const int32_t none = INT32_MAX;
-	int32_t best[MAX_CELL], base[MAX_CELL];
+	int32_t d = (int32_t)(2 * i + 1) - (int32_t)size;
+	return d * d * KEY_SCALE;
+}
+
+static uint32_t locate_any(const struct plan_field *field, const struct plan_cell *cell, float least)
+{
+	int32_t best[PLAN_MAX_CELL], base[PLAN_MAX_CELL], nearest = KEY_NONE;
+	uint32_t x = cell->x, width = cell->width;
 	for (uint32_t i = 0; i < width; i++) {
-		int32_t dx = (int32_t)(2 * i + 1) - (int32_t)width;
-		base[i] = dx * dx * 4096 + (int32_t)i;
-		best[i] = none;
+		base[i] = key_part(i, width) + (int32_t)i;
+		best[i] = KEY_NONE;
 	}
-	uint32_t slot = cell->y % field->ring;
 	for (uint32_t j = 0; j < cell->height; j++) {
-		uint32_t below = slot + 1 < field->ring ? slot + 1 : 0;
-		const float *ux = field->ux + slot * field->stride + cell->x, *uy = field->uy + slot * field->stride + cell->x;
-		const float *below_x = field->ux + below * field->stride + cell->x;
-		const float *below_y = field->uy + below * field->stride + cell->x;
-		int32_t dy = (int32_t)(2 * j + 1) - (int32_t)cell->height;
-		int32_t row = dy * dy * 4096 + (int32_t)(j << 6);
+		const float *ux = field->ux[j] + x, *uy = field->uy[j] + x;
+		const float *below_x = field->ux[j + 1] + x, *below_y = field->uy[j + 1] + x;
+		int32_t row = key_part(j, cell->height) + (int32_t)(j << 6);
 		for (uint32_t i = 0; i < width; i++) {
-			int32_t key = gradient(ux, uy, below_x, below_y, i) >= least ? base[i] + row : none;
+			int32_t key = gradient(ux, uy, below_x, below_y, i) >= least ? base[i] + row : KEY_NONE;
 			best[i] = key < best[i] ? key : best[i];
 		}
-		slot = below;
 	}
-	int32_t nearest = none;
 	for (uint32_t i = 0; i < width; i++)
 		nearest = best[i] < nearest ? best[i] : nearest;
-	return (uint32_t)nearest & 4095u;
+	return (uint32_t)nearest % KEY_SCALE;
+}
+
+typedef float vector8 __attribute__((vector_size(32), aligned(4), may_alias));
+typedef int32_t mask8 __attribute__((vector_size(32)));
+
+#define LOAD8(from) (*(const vector8 *)(const void *)(from))
+
+/* The same for cells eight pixels wide: the row as one vector, where there are such. */
+static uint32_t locate_8(const struct plan_field *field, const struct plan_cell *cell, float least)
+{
+	const mask8 base = {49 * KEY_SCALE,    25 * KEY_SCALE + 1, 9 * KEY_SCALE + 2,  1 * KEY_SCALE + 3,
+						1 * KEY_SCALE + 4, 9 * KEY_SCALE + 5,  25 * KEY_SCALE + 6, 49 * KEY_SCALE + 7};
+	mask8 best = {KEY_NONE, KEY_NONE, KEY_NONE, KEY_NONE, KEY_NONE, KEY_NONE, KEY_NONE, KEY_NONE};
+	uint32_t x = cell->x;
+	vector8 ux = LOAD8(field->ux[0] + x), uy = LOAD8(field->uy[0] + x);
+	for (uint32_t j = 0; j < cell->height; j++) {
+		vector8 below_x = LOAD8(field->ux[j + 1] + x), below_y = LOAD8(field->uy[j + 1] + x);
+		vector8 dx = LOAD8(field->ux[j] + x + 1) - ux, dy = LOAD8(field->uy[j] + x + 1) - uy;
+		vector8 down_x = below_x - ux, down_y = below_y - uy;
+		mask8 strong = (dx * dx + dy * dy >= least) | (down_x * down_x + down_y * down_y >= least);
+		mask8 key = base + (key_part(j, cell->height) + (int32_t)(j << 6));
+		mask8 better = strong & (key < best);
+		best = (key & better) | (best & ~better);
+		ux = below_x;
+		uy = below_y;
+	}
+	int32_t nearest = best[0];
+	for (int i = 1; i < 8; i++)
+		nearest = best[i] < nearest ? best[i] : nearest;
+	return (uint32_t)nearest % KEY_SCALE;
 }
 
 static uint32_t locate(const struct plan_field *field, const struct plan_cell *cell, float least)
 {
-	return cell->width == 8 ? locate_in(field, cell, 8, least) : locate_in(field, cell, cell->width, least);
+	return cell->width == 8 ? locate_8(field, cell, least) : locate_any(field, cell, least);
 }
 
 static void depth_decode(const void *raw, size_t count, uint32_t format, float *restrict z)
@@ -269,7 +308,7 @@ static inline uint32_t judge(struct point a, struct point b, struct point c, flo
 }
 
 static struct plan_quad_counts quads(const struct plan_vertex_row *upper, const struct plan_vertex_row *lower,
-                                     size_t count, float phase, uint32_t *restrict diagonals)
+									 size_t count, float phase, uint32_t *restrict diagonals)
 {
 	const struct plan_vertex_row up = *upper, low = *lower;
 	struct plan_quad_counts counts = {0, 0};
@@ -306,7 +345,7 @@ const struct plan_kernels LEVEL_KERNELS = {
 	.decode_half = decode_half,
 	.scale_row = scale_row,
 	.careful_row = careful_row,
-	.gradient_row = gradient_row,
+	.band_peaks = band_peaks,
 	.cell_peaks = cell_peaks,
 	.locate = locate,
 	.depth_row = depth_row,

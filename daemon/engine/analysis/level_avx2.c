@@ -13,6 +13,13 @@ static inline size_t decode_half_some(const uint16_t *halves, size_t count, floa
 	return i;
 }
 
+typedef float wide __attribute__((vector_size(32), aligned(4), may_alias));
+
+static inline wide wide_larger(wide a, wide b)
+{
+	return _mm256_max_ps(a, b);
+}
+
 #define LEVEL_KERNELS plan_kernels_avx2
 #define LEVEL_NAME "avx2"
 #include "daemon/engine/analysis/kernels.h"

@@ -10,6 +10,15 @@ static inline size_t decode_half_some(const uint16_t *halves, size_t count, floa
 	return 0;
 }
 
+typedef float wide __attribute__((vector_size(16), aligned(4), may_alias));
+typedef int32_t wide_mask __attribute__((vector_size(16)));
+
+static inline wide wide_larger(wide a, wide b)
+{
+	wide_mask larger = a > b;
+	return (wide)(((wide_mask)a & larger) | ((wide_mask)b & ~larger));
+}
+
 #define LEVEL_KERNELS plan_kernels_plain
 #define LEVEL_NAME "plain"
 #include "daemon/engine/analysis/kernels.h"

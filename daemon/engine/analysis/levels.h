@@ -49,16 +49,16 @@ struct plan_depth {
 	float range; /* far - near */
 };
 
-/* Rows of u in a ring: row y of the picture is at slot y % ring, stride floats apart. */
+/* Rows of u by their place in a cell row, the one below it included; one pixel more than the picture is readable. */
+#define PLAN_MAX_CELL 64u
+
 struct plan_field {
-	float *ux, *uy;
-	size_t stride;
-	uint32_t ring;
+	const float *ux[PLAN_MAX_CELL + 1], *uy[PLAN_MAX_CELL + 1];
 };
 
-/* A cell's pixels, columns x to x + width - 1. */
+/* A cell's pixels: columns from x on, the first rows of the field. */
 struct plan_cell {
-	uint32_t x, y, width, height;
+	uint32_t x, width, height;
 };
 
 /* A row of vertices. */
@@ -80,10 +80,9 @@ struct plan_kernels {
 	uint32_t (*scale_row)(const float *motion, size_t count, const struct plan_scale *scale, float *ux, float *uy);
 	/* The same for any bits; *invalid grows by the number of pixels that are no numbers. */
 	uint32_t (*careful_row)(const float *motion, size_t count, const struct plan_scale *scale, float *ux, float *uy,
-	                        uint64_t *invalid);
-	/* peaks[i] = max(peaks[i], g²) for one row of pixels and the row below it; reads one pixel beyond count. */
-	void (*gradient_row)(const float *ux, const float *uy, const float *below_x, const float *below_y, size_t count,
-	                     float *peaks);
+							uint64_t *invalid);
+	/* peaks[i]: the largest g² of column i of the first `rows` rows; count columns. */
+	void (*band_peaks)(const struct plan_field *field, uint32_t rows, size_t count, float *peaks);
 	/* Largest of each `cell` peaks, and of the last ones that are fewer. */
 	void (*cell_peaks)(const float *peaks, size_t count, uint32_t cell, float *largest);
 	/* The pixel of the cell with g² >= least that is nearest to its centre: row << 6 | column. One must exist. */
@@ -92,7 +91,7 @@ struct plan_kernels {
 	void (*depth_row)(const void *raw, size_t count, const struct plan_depth *depth, float *z);
 	/* Diagonals of the quads between two rows of vertices: 1 is v00 v11, 0 is v10 v01. */
 	struct plan_quad_counts (*quads)(const struct plan_vertex_row *upper, const struct plan_vertex_row *lower,
-	                                 size_t count, float phase, uint32_t *diagonals);
+									 size_t count, float phase, uint32_t *diagonals);
 	/* The largest ux² + uy². */
 	float (*largest_square)(const float *ux, const float *uy, size_t count);
 };
@@ -105,6 +104,6 @@ enum plan_level plan_level_best(void);
 
 /* plan_make() with kernels of the caller's choice. */
 int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
-                   const struct plan_kernels *kernels, struct error *error);
+				   const struct plan_kernels *kernels, struct error *error);
 
 #endif

@@ -53,7 +53,7 @@ static void reset(struct plan *plan, const struct frame *frame, const struct pla
 }
 
 static void lay_out(struct plan_motion *motion, struct plan_grid *grid, const struct frame *frame, uint32_t threshold,
-                    struct plan_arena *arena)
+					struct plan_arena *arena)
 {
 	uint32_t cell = grid->plan->cell;
 	plan_motion_init(motion, frame, cell, arena);
@@ -62,7 +62,7 @@ static void lay_out(struct plan_motion *motion, struct plan_grid *grid, const st
 
 /* Cuts the scratch into buffers, after growing it if it is too small. */
 static int prepare(struct plan *plan, struct plan_motion *motion, struct plan_grid *grid, const struct frame *frame,
-                   uint32_t threshold)
+				   uint32_t threshold)
 {
 	struct plan_arena arena = {NULL, 0};
 	lay_out(motion, grid, frame, threshold, &arena);
@@ -116,11 +116,11 @@ static int out_of_memory(struct plan *plan, struct error *error)
 {
 	plan->columns = plan->rows = 0;
 	return error_set(error, -ENOMEM, "no memory for the plan of a %u x %u picture with cells of %u pixels", plan->width,
-	                 plan->height, plan->cell);
+					 plan->height, plan->cell);
 }
 
 int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
-                   const struct plan_kernels *kernels, struct error *error)
+				   const struct plan_kernels *kernels, struct error *error)
 {
 	struct intervals intervals = intervals_of(&frame->header, params);
 	reset(plan, frame, params);

@@ -26,13 +26,13 @@ const char *plan_rest_name(enum plan_rest rest)
 
 void plan_print(const struct plan *plan, FILE *out)
 {
-	fprintf(out, "{\"frame\": %" PRIu64 ", \"width\": %u, \"height\": %u, \"cell\": %u, \"rest\": \"%s\", ", plan->frame_id,
-	        plan->width, plan->height, plan->cell, plan_rest_name(plan->rest));
+	fprintf(out, "{\"frame\": %" PRIu64 ", \"width\": %u, \"height\": %u, \"cell\": %u, \"rest\": \"%s\", ",
+			plan->frame_id, plan->width, plan->height, plan->cell, plan_rest_name(plan->rest));
 	fprintf(out, "\"real_interval_ms\": %.6f, \"last_phase\": %.6f, ", plan->real_interval_s * 1e3,
-	        (double)plan->last_phase);
+			(double)plan->last_phase);
 	fprintf(out, "\"columns\": %u, \"rows\": %u, \"vertices\": %u, \"triangles\": %u, ", plan->columns, plan->rows,
-	        plan->columns * plan->rows, plan->index_count / 3);
+			plan->columns * plan->rows, plan->index_count / 3);
 	fprintf(out, "\"snapped\": %u, \"folded\": %u, \"doubtful\": %u, \"invalid_pixels\": %" PRIu64 ", ", plan->snapped,
-	        plan->folded, plan->doubtful, plan->invalid_pixels);
+			plan->folded, plan->doubtful, plan->invalid_pixels);
 	fprintf(out, "\"max_displacement\": %.6f}\n", (double)plan->max_displacement);
 }

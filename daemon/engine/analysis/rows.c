@@ -100,11 +100,29 @@ const void *plan_rows_get(struct plan_rows *rows, uint32_t y)
 	return rows->columns ? rows->mapped : private;
 }
 
+static const uint8_t *pixel_at(const struct plan_rows *rows, uint32_t x, uint32_t y)
+{
+	size_t column = rows->columns ? rows->columns[x] : x;
+	return plan_rows_source(rows, y) + column * rows->pixel_bytes;
+}
+
 uint32_t plan_rows_pixel(const struct plan_rows *rows, uint32_t x, uint32_t y)
 {
+	const void *pixel = pixel_at(rows, x, y);
+	return rows->pixel_bytes == 2 ? *(const raw16 *)pixel : *(const raw32 *)pixel;
+}
+
+void plan_rows_expect(const struct plan_rows *rows, uint32_t x, uint32_t y)
+{
+	__builtin_prefetch(pixel_at(rows, x, y));
+}
+
+void plan_rows_expect_row(const struct plan_rows *rows, uint32_t y)
+{
+	if (!rows->data || y >= rows->colour_height)
+		return;
 	const uint8_t *row = plan_rows_source(rows, y);
-	size_t column = rows->columns ? rows->columns[x] : x;
-	if (rows->pixel_bytes == 2)
-		return *(const raw16 *)(const void *)(row + 2 * column);
-	return *(const raw32 *)(const void *)(row + 4 * column);
+	size_t bytes = (size_t)rows->width * rows->pixel_bytes;
+	for (size_t i = 0; i < bytes; i += 64)
+		__builtin_prefetch(row + i);
 }

@@ -52,4 +52,10 @@ const void *plan_rows_get(struct plan_rows *rows, uint32_t y);
 /* Bits of the pixel at colour position (x, y), read once; 2 or 4 bytes a pixel. */
 uint32_t plan_rows_pixel(const struct plan_rows *rows, uint32_t x, uint32_t y);
 
+/* Hints that the pixel will be read soon. */
+void plan_rows_expect(const struct plan_rows *rows, uint32_t x, uint32_t y);
+
+/* Hints that colour row y will be read soon; any y. */
+void plan_rows_expect_row(const struct plan_rows *rows, uint32_t y);
+
 #endif

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* One depth value to z; the same bits in the kernels and for single pixels. */
-#ifndef PURSUIT_ANALYSIS_DEPTH_H
-#define PURSUIT_ANALYSIS_DEPTH_H
+/* One stored value to its number; the same bits in the kernels and for single pixels. */
+#ifndef PURSUIT_ANALYSIS_VALUES_H
+#define PURSUIT_ANALYSIS_VALUES_H
 
 #include <string.h>
 
@@ -21,6 +21,17 @@ static inline uint32_t plan_bits_of(float value)
 	uint32_t bits;
 	memcpy(&bits, &value, sizeof(bits));
 	return bits;
+}
+
+/* Exact, without float denormals, so that the mode of the FPU does not matter. */
+static inline float plan_half_value(uint32_t half)
+{
+	uint32_t exponent = half & 0x7c00u;
+	uint32_t shifted = (half & 0x7fffu) << 13;
+	uint32_t normal = shifted + (112u << 23) + (exponent == 0x7c00u ? 112u << 23 : 0u);
+	float tiny = plan_float_of(shifted + (113u << 23)) - plan_float_of(113u << 23);
+	uint32_t bits = exponent == 0 ? plan_bits_of(tiny) : normal;
+	return plan_float_of(bits | (half & 0x8000u) << 16);
 }
 
 static inline float plan_depth_decode16(uint32_t raw)
@@ -60,8 +71,8 @@ static inline float plan_depth_open(float d)
 static inline float plan_depth_value(uint32_t raw, const struct plan_depth *depth)
 {
 	float d = depth->format == PURSUIT_FORMAT_DEPTH16   ? plan_depth_decode16(raw)
-	          : depth->format == PURSUIT_FORMAT_DEPTH24 ? plan_depth_decode24(raw)
-	                                                    : plan_float_of(raw);
+			  : depth->format == PURSUIT_FORMAT_DEPTH24 ? plan_depth_decode24(raw)
+														: plan_float_of(raw);
 	switch (depth->map) {
 	case PLAN_DEPTH_REVERSED:
 		return plan_depth_clamp(1.0f - d);
