@@ -22,7 +22,7 @@ uint16_t shim_half(float value)
 	}
 	if (magnitude < 0x38800000u) { /* a denormal half, or 0 */
 		uint32_t shift = 126 - (magnitude >> 23);
-		if (shift > 25) {
+		if (shift > 24) {
 			return (uint16_t)sign;
 		}
 		uint32_t mantissa = (magnitude & 0x7fffffu) | 0x800000u;

@@ -120,6 +120,9 @@ static void answer_hello(struct fake_daemon *daemon, const struct pursuit_messag
 		send_packet(daemon, &welcome, 7, NULL, 0);
 		return;
 	case FAKE_LONG_PACKET:
+		/* Cut to what the client can hold, it would be a good REFUSED. */
+		welcome.header.type = PURSUIT_MESSAGE_REFUSED;
+		welcome.header.size = sizeof(struct pursuit_message_refused);
 		memcpy(large, &welcome, sizeof(welcome));
 		send_packet(daemon, large, sizeof(large), NULL, 0);
 		return;
@@ -137,6 +140,9 @@ static void answer_hello(struct fake_daemon *daemon, const struct pursuit_messag
 		return;
 	case FAKE_OPENED_FIRST:
 		return;
+	case FAKE_TWO_WELCOMES:
+		send_packet(daemon, &welcome, sizeof(welcome), NULL, 0);
+		break;
 	default:
 		break;
 	}

@@ -38,7 +38,8 @@ enum fake_manner {
 	FAKE_BLOCKING_FULL_WAKE, /* an eventfd whose counter is full and that blocks */
 	FAKE_OTHER_STREAM,
 	FAKE_OPENED_FIRST, /* STREAM_OPENED without WELCOME */
-	FAKE_FLOOD,        /* as many REFUSED as fit, whenever it can */
+	FAKE_TWO_WELCOMES,
+	FAKE_FLOOD, /* as many REFUSED as fit, whenever it can */
 	FAKE_MANNERS
 };
 

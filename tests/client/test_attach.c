@@ -208,6 +208,16 @@ static void test_feedback(void)
 	CHECK_INT(report.frame_id, id);
 	CHECK_INT(report.flip_ns, 1000 + id);
 	CHECK_INT(pursuit_poll_feedback(stream, &report), 0);
+	fake_stop(&daemon, true);
+	pursuit_update(stream);
+	CHECK_INT(pursuit_poll_feedback(stream, &report), 0);
+
+	/* The ring of the next daemon begins anew. */
+	CHECK(fake_start(&daemon, harness.path, FAKE_GOOD));
+	CHECK(attach(stream, &daemon));
+	fake_report(&daemon, 7, PURSUIT_FEEDBACK_REPLACED);
+	CHECK_INT(pursuit_poll_feedback(stream, &report), 1);
+	CHECK_INT(report.frame_id, 7);
 	CHECK(close_stream(&stream));
 	fake_stop(&daemon, true);
 }

@@ -233,6 +233,23 @@ static void test_order(void)
 	end();
 }
 
+static int reads;
+
+static void count_reads(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type, void *pixels)
+{
+	reads++;
+	glReadPixels(x, y, width, height, format, type, pixels);
+}
+
+static void *counting_lookup(const char *name)
+{
+	void (*function)(GLint, GLint, GLsizei, GLsizei, GLenum, GLenum, void *) = count_reads;
+	void *address;
+
+	memcpy(&address, &function, sizeof(address));
+	return strcmp(name, "glReadPixels") == 0 ? address : egl_context_lookup(name);
+}
+
 static void test_no_daemon(void)
 {
 	struct pursuit_stream_params params = default_params();
@@ -240,13 +257,14 @@ static void test_no_daemon(void)
 	struct pursuit_frame frame = {.time_ns = 1};
 
 	stream = pursuit_open(&params);
-	gl = pursuit_gl_create(stream, egl_context_lookup);
+	gl = pursuit_gl_create(stream, counting_lookup);
 	for (int i = 0; i < 10; i++) {
 		CHECK_INT(pursuit_gl_submit(gl, &textures, &frame), 0);
 	}
 	CHECK_INT(pursuit_gl_flush(gl), 0);
 	CHECK_INT(status_of(stream).submitted, 10);
 	CHECK_INT(status_of(stream).bytes_copied, 0);
+	CHECK_INT(reads, 0);
 	pursuit_gl_destroy(&gl);
 	pursuit_close(&stream);
 	delete_textures(&textures);
