@@ -151,6 +151,8 @@ uint8_t *sample_read_file(const char *path, size_t *size)
 
 void sample_write_file(const char *path, const void *data, size_t size)
 {
+	/* A truncated file is flushed to the disk at its close by some file systems; a new one is not. */
+	unlink(path);
 	FILE *file = fopen(path, "wb");
 	if (!file || (size && fwrite(data, 1, size, file) != size) || fclose(file) != 0) {
 		perror(path);
