@@ -50,7 +50,7 @@ static const struct option_row rows[] = {
 		 "Give real frames the detail back that blurred in-between frames lack."),
 	NUMBER(cell, "cell", OPTION_ENGINE, "8", 4, 64, "px", "Size of a grid cell."),
 	NUMBER(blur_level, "blur-level", OPTION_ENGINE, "2", 1, 6, "", "Pyramid level of the blurred picture."),
-	REAL(snap_threshold, "snap-threshold", OPTION_ENGINE, "0.5", 0.25, 64, "px",
+	REAL(snap_threshold, "snap-threshold", OPTION_ENGINE, "0.5", 0.25, 15.75, "px",
 		 "Jump of the motion that a grid vertex snaps to, in steps of a quarter."),
 	REAL(display_width_mm, "display-width-mm", OPTION_ENGINE, "531", 10, 20000, "mm",
 		 "Width of the picture on the display; with the viewing distance it gives visual angles."),

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/present/grid.h"
+
 #define SECOND_NS INT64_C(1000000000)
 /* Intervals outside are pauses or nonsense and teach nothing. */
 #define INTERVAL_MIN_NS UINT64_C(500000)
@@ -21,8 +23,6 @@
 #define DELAY_LIMIT_NS INT64_C(4000000000000000000)
 /* At most so much real time faster than the display: still shown as it comes. */
 #define PASS_THROUGH_RATIO 1.04
-
-__extension__ typedef unsigned __int128 wide;
 
 void pacer_init(struct pacer *pacer, const struct pacer_params *params)
 {
@@ -39,25 +39,28 @@ void pacer_init(struct pacer *pacer, const struct pacer_params *params)
 
 /* ---- the grid ---- */
 
-uint64_t pacer_vblank_time(const struct pacer *pacer, uint64_t vblank)
+static struct grid grid_of(const struct pacer *pacer)
 {
 	const struct pacer_params *p = &pacer->params;
-	return p->epoch_ns + (uint64_t)((wide)vblank * (wide)SECOND_NS * p->refresh_denominator / p->refresh_numerator);
+	return (struct grid){p->refresh_numerator, p->refresh_denominator, p->epoch_ns};
+}
+
+uint64_t pacer_vblank_time(const struct pacer *pacer, uint64_t vblank)
+{
+	const struct grid grid = grid_of(pacer);
+	return grid_time(&grid, vblank);
 }
 
 uint64_t pacer_vblank_at_or_after(const struct pacer *pacer, uint64_t time_ns)
 {
-	const struct pacer_params *p = &pacer->params;
-	if (time_ns <= p->epoch_ns)
-		return 0;
-	/* floor(k x) >= d for a whole d is k x >= d. */
-	const wide period = (wide)SECOND_NS * p->refresh_denominator;
-	return (uint64_t)(((wide)(time_ns - p->epoch_ns) * p->refresh_numerator + period - 1) / period);
+	const struct grid grid = grid_of(pacer);
+	return grid_at_or_after(&grid, time_ns);
 }
 
 static double vblank_ns(const struct pacer *pacer)
 {
-	return (double)SECOND_NS * (double)pacer->params.refresh_denominator / (double)pacer->params.refresh_numerator;
+	const struct grid grid = grid_of(pacer);
+	return grid_period_ns(&grid);
 }
 
 /* ---- history ---- */
@@ -141,7 +144,7 @@ void pacer_add_frame(struct pacer *pacer, const struct pacer_frame *frame)
 
 /* ---- decisions ---- */
 
-static bool passes_through(const struct pacer *pacer)
+bool pacer_passes_through(const struct pacer *pacer)
 {
 	return pacer->interval_ns != 0 && (double)pacer->interval_ns <= vblank_ns(pacer) * PASS_THROUGH_RATIO;
 }
@@ -185,7 +188,7 @@ static void predict(struct pacer *pacer)
 	const uint64_t next = pacer_next_real_vblank(pacer);
 	pacer->n = 1;
 	pacer->last_phase = 0.0;
-	if (next == 0 || passes_through(pacer))
+	if (next == 0 || pacer_passes_through(pacer))
 		return;
 	pacer->n = next - pacer->first_vblank > 8 ? 8 : (uint32_t)(next - pacer->first_vblank);
 	pacer->last_phase =
@@ -198,7 +201,7 @@ static void decide_real(struct pacer *pacer, struct pacer_decision *decision)
 	pacer->frame_is_new = false;
 	predict(pacer);
 	decision->show = PACER_REAL;
-	decision->phase = passes_through(pacer) ? 0.0 : phase_at(pacer, decision->target_ns);
+	decision->phase = pacer_passes_through(pacer) ? 0.0 : phase_at(pacer, decision->target_ns);
 	if (fabs(decision->phase) <= PACER_PLAIN_PHASE)
 		decision->phase = 0.0;
 	decision->phase = fmax(-1.0, fmin(decision->phase, pacer->params.max_phase));
@@ -208,7 +211,7 @@ static void decide_later(const struct pacer *pacer, uint64_t vblank, struct pace
 {
 	decision->phase = phase_at(pacer, decision->target_ns);
 	const bool over = vblank - pacer->first_vblank >= 8 || decision->phase > pacer->params.max_phase;
-	decision->show = pacer->interval_ns == 0 || passes_through(pacer) || over ? PACER_REPEAT : PACER_IN_BETWEEN;
+	decision->show = pacer->interval_ns == 0 || pacer_passes_through(pacer) || over ? PACER_REPEAT : PACER_IN_BETWEEN;
 }
 
 struct pacer_decision pacer_decide(struct pacer *pacer, uint64_t vblank)

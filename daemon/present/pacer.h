@@ -106,6 +106,9 @@ struct pacer_decision pacer_decide(struct pacer *pacer, uint64_t vblank);
  */
 uint64_t pacer_next_real_vblank(const struct pacer *pacer);
 
+/* The stream is about as fast as the display, or faster: nothing is extrapolated. */
+bool pacer_passes_through(const struct pacer *pacer);
+
 /*
  * The decision could not be kept (the picture came too late): what was to be shown was not. A real frame is
  * then decided again for a later vblank.

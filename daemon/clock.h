@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The clock: now, and wait until. The real one is CLOCK_MONOTONIC; the virtual
+ * one stands still until somebody waits, for tests and replay.
+ *
+ * Who is told a time never reads a clock of its own (pacer, statistics).
+ */
+#ifndef PURSUIT_CLOCK_H
+#define PURSUIT_CLOCK_H
+
+#include <stdatomic.h>
+#include <stdint.h>
+
+struct clock {
+	uint64_t (*now)(struct clock *clock); /* ns; any thread */
+	/* Returns at time_ns or later; at once if that is over. Any thread. */
+	void (*wait_until)(struct clock *clock, uint64_t time_ns);
+};
+
+static inline uint64_t clock_now(struct clock *clock)
+{
+	return clock->now(clock);
+}
+
+static inline void clock_wait_until(struct clock *clock, uint64_t time_ns)
+{
+	clock->wait_until(clock, time_ns);
+}
+
+/* CLOCK_MONOTONIC, absolute waits. Needs no finish. */
+void clock_init_real(struct clock *clock);
+
+/* Waiting moves it there. Meant for one thread that waits. */
+struct clock_virtual {
+	struct clock clock;
+	_Atomic uint64_t time_ns;
+};
+
+void clock_init_virtual(struct clock_virtual *clock, uint64_t start_ns);
+
+#endif

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/control.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "daemon/version.h"
+
+#define TIMELINE_ROWS 400u
+
+/* A recording that is being closed on a thread of its own, since the disk may be slow. */
+struct closing {
+	pthread_t thread;
+	bool running;
+	struct recorder *recorder;
+	struct recorder_stats stats;
+	struct error error;
+	int result;
+	int done_fd; /* eventfd */
+	struct loop_source *source;
+	uint64_t client_id;
+	uint32_t serial;
+};
+
+struct control {
+	struct control_params params;
+	struct server *server;
+	uint64_t start_ns;
+	bool recording;
+	struct recorder *recorder; /* the output's, while recording; owned here */
+	struct closing closing;
+};
+
+/* ---- recording ---- */
+
+static void print_settings(const struct settings *settings, FILE *out, const char *equals)
+{
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char value[1024];
+		settings_get(settings, row->name, value, sizeof(value));
+		fprintf(out, "%s%s%s\n", row->name, equals, value);
+	}
+}
+
+static char *settings_text(const struct settings *settings, const char *equals)
+{
+	char *text = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+	if (!out)
+		return NULL;
+	print_settings(settings, out, equals);
+	fclose(out);
+	return text;
+}
+
+/* Path or fd (taken over). 0 or -errno with a sentence. */
+static int start_recording(struct control *control, const char *path, int fd, struct error *error)
+{
+	const struct recorder_params params = {
+		.writer = {.path = path, .fd = fd > 0 ? fd : 0, .info = "program=pursuitd " PURSUITD_VERSION "\n"},
+	};
+	control->recorder = recorder_create(&params, error);
+	if (!control->recorder)
+		return -EIO;
+	char *text = settings_text(control->params.settings, "=");
+	if (text)
+		recorder_settings(control->recorder, text, clock_now(control->params.clock));
+	free(text);
+	control->recording = true;
+	output_set_recorder(control->params.output, control->recorder);
+	log_info(control->params.log, "recording %s", path ? path : "into a client's file");
+	return 0;
+}
+
+static void *close_recording(void *data)
+{
+	struct closing *closing = data;
+	const uint64_t one = 1;
+	closing->result = recorder_destroy(&closing->recorder, &closing->stats, &closing->error);
+	while (write(closing->done_fd, &one, sizeof(one)) < 0 && errno == EINTR)
+		;
+	return NULL;
+}
+
+static void log_recording(const struct control *control)
+{
+	const struct closing *closing = &control->closing;
+	log_info(control->params.log, "recording ended: %" PRIu64 " frames, %" PRIu64 " dropped, %" PRIu64 " bytes",
+			 closing->stats.frames_written, closing->stats.frames_dropped, closing->stats.bytes_written);
+	if (closing->result < 0)
+		log_error(control->params.log, "recording: %s", closing->error.text);
+}
+
+static void on_closed(void *data, uint32_t events)
+{
+	struct control *control = data;
+	struct closing *closing = &control->closing;
+	uint64_t count;
+	(void)events;
+	if (read(closing->done_fd, &count, sizeof(count)) < 0 || !closing->running)
+		return;
+	pthread_join(closing->thread, NULL);
+	closing->running = false;
+	log_recording(control);
+	json_t *object =
+		json_pack("{s:I, s:I, s:I, s:s}", "frames", (json_int_t)closing->stats.frames_written, "dropped",
+				  (json_int_t)closing->stats.frames_dropped, "bytes", (json_int_t)closing->stats.bytes_written, "error",
+				  closing->result < 0 ? closing->error.text : "");
+	char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
+	if (control->server)
+		server_reply(control->server, closing->client_id, closing->serial, closing->result, text ? text : "{}");
+	free(text);
+	json_decref(object);
+}
+
+/* Takes the recorder away from the output. */
+static void detach_recorder(struct control *control)
+{
+	output_set_recorder(control->params.output, NULL);
+	control->closing.recorder = control->recorder;
+	control->closing.error.text[0] = 0;
+	control->recorder = NULL;
+	control->recording = false;
+}
+
+static int stop_recording(struct control *control, uint64_t client_id, uint32_t serial)
+{
+	struct closing *closing = &control->closing;
+	detach_recorder(control);
+	closing->client_id = client_id;
+	closing->serial = serial;
+	const int result = pthread_create(&closing->thread, NULL, close_recording, closing);
+	closing->running = result == 0;
+	if (result != 0)
+		recorder_destroy(&closing->recorder, &closing->stats, &closing->error);
+	return -result;
+}
+
+/* ---- life ---- */
+
+struct control *control_create(const struct control_params *params, struct error *error)
+{
+	struct control *control = calloc(1, sizeof(*control));
+	if (!control) {
+		error_set(error, -ENOMEM, "out of memory");
+		return NULL;
+	}
+	control->params = *params;
+	control->start_ns = clock_now(params->clock);
+	control->closing.done_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+	if (control->closing.done_fd >= 0)
+		control->closing.source = loop_add(params->loop, control->closing.done_fd, EPOLLIN, on_closed, control);
+	if (!control->closing.source)
+		error_set(error, -errno, "control: %s", strerror(errno));
+	else if (!*params->settings->record || start_recording(control, params->settings->record, -1, error) == 0)
+		return control;
+	control_destroy(&control);
+	return NULL;
+}
+
+void control_destroy(struct control **control)
+{
+	struct control *self = *control;
+	*control = NULL;
+	if (!self)
+		return;
+	self->server = NULL;
+	if (self->closing.running) {
+		pthread_join(self->closing.thread, NULL);
+		log_recording(self);
+	}
+	if (self->recording) {
+		detach_recorder(self);
+		self->closing.result = recorder_destroy(&self->closing.recorder, &self->closing.stats, &self->closing.error);
+		log_recording(self);
+	}
+	loop_remove(&self->closing.source);
+	if (self->closing.done_fd >= 0)
+		close(self->closing.done_fd);
+	free(self);
+}
+
+void control_set_server(struct control *control, struct server *server)
+{
+	control->server = server;
+}
+
+/* ---- requests ---- */
+
+struct request {
+	uint64_t client_id;
+	uint32_t serial;
+	const char *arguments; /* what follows the name */
+	int fd;                /* the handler's, -1 none */
+};
+
+static void reply(struct control *control, const struct request *request, int status, const char *text)
+{
+	server_reply(control->server, request->client_id, request->serial, status, text);
+}
+
+static void add_recording(const struct control *control, json_t *object)
+{
+	struct recorder_stats stats;
+	if (!control->recording)
+		return;
+	recorder_stats(control->recorder, &stats);
+	json_object_set_new(object, "recording",
+						json_pack("{s:I, s:I, s:I, s:s}", "frames", (json_int_t)stats.frames_written, "dropped",
+								  (json_int_t)stats.frames_dropped, "bytes", (json_int_t)stats.bytes_written, "error",
+								  stats.text));
+}
+
+char *control_status_text(struct control *control)
+{
+	struct stats *stats = malloc(sizeof(*stats)); /* a quarter of a megabyte */
+	struct output_info info;
+	char refresh[64];
+	if (!stats)
+		return NULL;
+	output_get_stats(control->params.output, stats);
+	output_get_info(control->params.output, &info);
+	json_t *object = stats_json(stats);
+	free(stats);
+	settings_get(control->params.settings, "refresh", refresh, sizeof(refresh));
+	json_object_set_new(object, "version", json_string(PURSUITD_VERSION));
+	json_object_set_new(object, "pid", json_integer(getpid()));
+	json_object_set_new(object, "uptime",
+						json_real((double)((clock_now(control->params.clock) - control->start_ns) / 1000000) / 1e3));
+	json_object_set_new(object, "method", json_string(control->params.settings->method));
+	json_object_set_new(object, "refresh", json_real((double)info.grid.numerator / (double)info.grid.denominator));
+	json_object_set_new(object, "refresh_text", json_string(refresh));
+	json_object_set_new(object, "presenter", json_string(info.presenter));
+	json_object_set_new(object, "renderer", json_string(info.renderer));
+	json_object_set_new(object, "context", json_string(info.context));
+	json_object_set_new(object, "software", json_boolean(info.software));
+	if (control->server) {
+		json_object_set_new(object, "clients", json_integer(server_client_count(control->server)));
+		json_object_set_new(object, "streams", server_streams_json(control->server));
+	}
+	add_recording(control, object);
+	char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(12));
+	json_decref(object);
+	return text;
+}
+
+static void on_status(struct control *control, const struct request *request)
+{
+	char *text = control_status_text(control);
+	reply(control, request, text ? 0 : ENOMEM, text ? text : "out of memory");
+	free(text);
+}
+
+static void on_settings(struct control *control, const struct request *request)
+{
+	char *text = settings_text(control->params.settings, " = ");
+	reply(control, request, text ? 0 : ENOMEM, text ? text : "out of memory");
+	free(text);
+}
+
+static void on_timeline(struct control *control, const struct request *request)
+{
+	unsigned long long from = 0, count = TIMELINE_ROWS;
+	struct stats *stats = malloc(sizeof(*stats));
+	if (sscanf(request->arguments, "%llu %llu", &from, &count) < 0 && *request->arguments)
+		from = 0;
+	if (count > TIMELINE_ROWS)
+		count = TIMELINE_ROWS;
+	if (!stats) {
+		reply(control, request, ENOMEM, "out of memory");
+		return;
+	}
+	output_get_stats(control->params.output, stats);
+	json_t *object = stats_timeline_json(stats, from, count);
+	char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6));
+	reply(control, request, text ? 0 : ENOMEM, text ? text : "out of memory");
+	free(text);
+	json_decref(object);
+	free(stats);
+}
+
+/* A pipe or a device could keep the recorder's thread for ever. */
+static const char *unfit_for_recording(int fd)
+{
+	struct stat status;
+	const int flags = fcntl(fd, F_GETFL);
+	if (fd < 0)
+		return "record: there is no file with the request";
+	if (fstat(fd, &status) < 0 || !S_ISREG(status.st_mode))
+		return "record: the file is no regular file";
+	if ((flags & O_ACCMODE) == O_RDONLY || (flags & O_PATH))
+		return "record: the file is not open for writing";
+	return NULL;
+}
+
+static void on_record(struct control *control, const struct request *request)
+{
+	struct error error = {""};
+	const char *unfit = unfit_for_recording(request->fd);
+	if (unfit || control->recording || control->closing.running) {
+		if (request->fd >= 0)
+			close(request->fd);
+		reply(control, request, unfit ? EINVAL : EBUSY, unfit ? unfit : "record: a recording is running already");
+		return;
+	}
+	const int result = start_recording(control, NULL, request->fd, &error);
+	reply(control, request, result, result < 0 ? error.text : "recording");
+}
+
+static void on_record_stop(struct control *control, const struct request *request)
+{
+	if (!control->recording) {
+		reply(control, request, EINVAL, "record-stop: nothing is being recorded");
+		return;
+	}
+	const int result = stop_recording(control, request->client_id, request->serial);
+	if (result < 0)
+		reply(control, request, result, "record-stop: no thread to close the file");
+}
+
+static void on_ping(struct control *control, const struct request *request)
+{
+	reply(control, request, 0, "pong");
+}
+
+void control_handle(void *data, uint64_t client_id, uint32_t serial, const char *text, int fd)
+{
+	static const struct {
+		const char *name;
+		void (*handle)(struct control *control, const struct request *request);
+	} requests[] = {
+		{"status", on_status}, {"settings", on_settings},       {"timeline", on_timeline},
+		{"record", on_record}, {"record-stop", on_record_stop}, {"ping", on_ping},
+	};
+	struct control *control = data;
+	const size_t length = strcspn(text, " ");
+	const struct request request = {client_id, serial, text + length + strspn(text + length, " "), fd};
+	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]); i++) {
+		if (strlen(requests[i].name) == length && strncmp(requests[i].name, text, length) == 0) {
+			requests[i].handle(control, &request);
+			return;
+		}
+	}
+	char answer[256];
+	snprintf(answer, sizeof(answer),
+			 "\"%.64s\" is no request; there are status, settings, timeline, record, record-stop and ping", text);
+	reply(control, &request, EINVAL, answer);
+	if (fd >= 0)
+		close(fd);
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * CONTROL requests: what a client may ask the daemon. One line of text in, text
+ * out; JSON where figures are told. On main.
+ *
+ *   status                  figures, streams, renderer (JSON)
+ *   settings                the settings, name = value lines
+ *   timeline [FROM [COUNT]] displayed frames: {first, total, rows: [[vblank,
+ *                           target, ready, flip, frame id, show, phase], ...]};
+ *                           ask again from first + number of rows
+ *   record                  with one fd, a regular file open for writing: records
+ *                           the frames received from now on
+ *   record-stop             ends the recording; answered when it is on disk:
+ *                           {frames, dropped, bytes, error}
+ *   ping                    "pong"
+ */
+#ifndef PURSUIT_CONTROL_H
+#define PURSUIT_CONTROL_H
+
+#include <stdint.h>
+
+#include "daemon/clock.h"
+#include "daemon/error.h"
+#include "daemon/log.h"
+#include "daemon/loop.h"
+#include "daemon/options.h"
+#include "daemon/output.h"
+#include "daemon/server.h"
+
+struct control;
+
+struct control_params {
+	struct loop *loop;
+	const struct log *log;
+	struct clock *clock;
+	const struct settings *settings;
+	struct output *output;
+};
+
+/* Starts the recording that the settings ask for. NULL with a sentence. */
+struct control *control_create(const struct control_params *params, struct error *error);
+/* Ends a recording, which waits for the disk. NULL accepted. */
+void control_destroy(struct control **control);
+
+/* Where answers go; before the first request. */
+void control_set_server(struct control *control, struct server *server);
+
+/* As server_params.control. */
+void control_handle(void *data, uint64_t client_id, uint32_t serial, const char *text, int fd);
+
+/* The status as JSON, for the end; the caller frees it. NULL: out of memory. */
+char *control_status_text(struct control *control);
+
+#endif

@@ -1,0 +1,291 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include <errno.h>
+#include <string.h>
+
+#include "daemon/render.h"
+
+#define MS UINT64_C(1000000)
+#define ENGINE_FIRST_DELAY (100 * MS)
+#define ENGINE_LAST_DELAY (5000 * MS)
+
+/* ---- the engine ---- */
+
+static void lose_engine(struct render *render, const char *why)
+{
+	engine_destroy(&render->engine);
+	render->begun = false;
+	render->engine_delay_ns = render->engine_delay_ns ? render->engine_delay_ns * 2 : ENGINE_FIRST_DELAY;
+	if (render->engine_delay_ns > ENGINE_LAST_DELAY)
+		render->engine_delay_ns = ENGINE_LAST_DELAY;
+	render->engine_retry_ns = clock_now(render->clock) + render->engine_delay_ns;
+	render->owner.lock_stats(render->owner.data);
+	render->stats->engine_losses++;
+	render->owner.unlock_stats(render->owner.data);
+	log_warning(render->log, "the engine is lost, to be made anew in %u ms: %s",
+				(unsigned)(render->engine_delay_ns / MS), why);
+}
+
+bool draw_revive_engine(struct render *render, uint64_t now_ns)
+{
+	struct engine_params params;
+	struct error error;
+	if (render->engine)
+		return true;
+	if (now_ns < render->engine_retry_ns)
+		return false;
+	if (settings_engine_params(render->settings, &params, &error) == 0)
+		render->engine = engine_create(&params, &error);
+	if (!render->engine) {
+		lose_engine(render, error.text);
+		return false;
+	}
+	log_info(render->log, "the engine is back");
+	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
+	return true;
+}
+
+/* A picture from the engine into the presenter's memory. */
+static int draw(struct render *render, enum engine_show show, double phase, struct presenter_image *image)
+{
+	const struct engine_request request = {.show = show, .phase = phase};
+	struct presenter *presenter = render->presenter;
+	struct error error;
+	uint32_t width, height;
+
+	engine_get_size(render->engine, &width, &height);
+	int result = presenter->impl->acquire(presenter, width, height, image);
+	if (result < 0) {
+		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
+		return result;
+	}
+	struct engine_image target = {.data = image->data, .stride = image->stride};
+	result = engine_render(render->engine, &request, &target, &error);
+	if (result < 0) {
+		presenter->impl->release(presenter, image);
+		if (result == -EIO)
+			lose_engine(render, error.text);
+		else
+			log_warning(render->log, "%s", error.text);
+	}
+	return result;
+}
+
+/* Queues a picture for a vblank; -ETIME if it is over, and the picture is the caller's still. */
+static int queue(struct render *render, const struct presenter_image *image, uint64_t vblank, enum stats_show show,
+				 double phase)
+{
+	const uint64_t serial = render->serial + 1;
+	const struct showing_picture picture = {.serial = serial,
+											.group = render->group,
+											.show = show,
+											.phase = (float)phase,
+											.ready_ns = clock_now(render->clock)};
+	/* Known before it can be shown. */
+	showing_add_picture(&render->showing, &picture);
+	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
+	if (result == 0)
+		render->serial = serial;
+	return result;
+}
+
+/* ---- real frames ---- */
+
+void draw_count_report(struct render *render)
+{
+	if (!render->report_due || !render->engine)
+		return;
+	const struct engine_report *report = engine_get_report(render->engine);
+	render->report_due = false;
+	render->owner.lock_stats(render->owner.data);
+	stats_add_report(render->stats, report);
+	render->owner.unlock_stats(render->owner.data);
+}
+
+static bool left_out(const struct engine_report *report, const char *name)
+{
+	for (uint32_t i = 0; i < report->left_out_count; i++)
+		if (strcmp(report->left_out[i].name, name) == 0)
+			return true;
+	return false;
+}
+
+static bool ran(const struct engine_report *report, const char *name)
+{
+	for (uint32_t i = 0; i < report->pass_count; i++)
+		if (strcmp(report->passes[i].name, name) == 0)
+			return report->passes[i].runs > 0;
+	return false;
+}
+
+/* Takes the newest frame into render->frame; counts what was lost on the way. */
+static int take_counted(struct render *render, uint64_t now_ns, struct refusal *refusal)
+{
+	_Atomic uint64_t *lost = &render->stream->counters.lost_frames;
+	const uint64_t lost_before = atomic_load(lost);
+	const int result = stream_take(render->stream, now_ns, &render->frame, refusal);
+	render->owner.lock_stats(render->owner.data);
+	render->stats->lost_real_frames += atomic_load(lost) - lost_before;
+	render->stats->received_frames += result == 1;
+	render->stats->refused_frames += result < 0;
+	render->owner.unlock_stats(render->owner.data);
+	return result;
+}
+
+/* Takes the newest frame and tells pacer, recorder and bookkeeping. Is there one? */
+static bool take(struct render *render, uint64_t now_ns)
+{
+	struct refusal refusal;
+	const int result = take_counted(render, now_ns, &refusal);
+	if (result <= 0) {
+		if (result < 0)
+			render->owner.report(render->owner.data, result == -EPROTO ? OUTPUT_STREAM_BROKEN : OUTPUT_FRAME_REFUSED,
+								 render->stream, &refusal);
+		return false;
+	}
+	const struct pursuit_frame_header *header = &render->frame.header;
+	const struct pacer_frame frame = {header->frame_id, header->time_ns, header->real_interval_ns,
+									  render->frame.intake_ns};
+	render->owner.record(render->owner.data, &render->frame);
+	pacer_add_frame(&render->pacer, &frame);
+	render->group++;
+	render->owner.lock_stats(render->owner.data);
+	showing_add_frame(&render->showing, render->group, render->stream, &render->frame);
+	render->owner.unlock_stats(render->owner.data);
+	return true;
+}
+
+static bool begin(struct render *render, const struct pacer_decision *decision)
+{
+	const struct engine_begin_params params = {
+		.n = decision->n, .last_phase = decision->last_phase, .real_interval_ns = decision->interval_ns};
+	struct error error;
+	const int result = engine_begin(render->engine, &render->frame, &params, &error);
+	render->begun = render->report_due = result == 0;
+	if (result == -EIO) {
+		lose_engine(render, error.text);
+	} else if (result < 0) {
+		struct refusal refusal;
+		struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
+		if (frame)
+			frame->report.state = PURSUIT_FEEDBACK_REFUSED;
+		refuse(&refusal, result, PURSUIT_REFUSED_FRAME, "planes", 0, "%.159s", error.text);
+		render->owner.report(render->owner.data, OUTPUT_FRAME_REFUSED, render->stream, &refusal);
+	}
+	return render->begun;
+}
+
+/* Queues the real frame; if its vblank is over, for the next one: it is late, never lost. */
+static int queue_real(struct render *render, const struct presenter_image *image, struct pacer_decision *decision,
+					  uint64_t *vblank)
+{
+	bool late = false;
+	int result;
+	while ((result = queue(render, image, *vblank, STATS_REAL, decision->phase)) == -ETIME) {
+		late = true;
+		showing_plan(&render->showing, *vblank, SHOWING_REAL);
+		pacer_missed(&render->pacer, decision);
+		*vblank = grid_at_or_after(&render->grid, clock_now(render->clock) + 1);
+		const double phase = decision->phase;
+		*decision = pacer_decide(&render->pacer, *vblank);
+		decision->phase = phase;
+	}
+	if (late) {
+		render->owner.lock_stats(render->owner.data);
+		render->stats->late_real_frames++;
+		render->owner.unlock_stats(render->owner.data);
+	}
+	return result;
+}
+
+/* What is known once the frame has its vblank. */
+static void settle_real(struct render *render, const struct pacer_decision *decision, uint64_t vblank)
+{
+	const struct engine_report *report = engine_get_report(render->engine);
+	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
+	const uint64_t next = pacer_next_real_vblank(&render->pacer);
+	const uint64_t lead = render->real_cost.safe_ns + MS;
+
+	showing_plan(&render->showing, vblank, SHOWING_REAL);
+	render->n = decision->n;
+	render->real_vblank = vblank;
+	render->next_vblank = vblank + 1;
+	render->pause_vblanks = 0;
+	render->paused = false;
+	render->showing.pausing = false;
+	render->standby_done = false;
+	render->still = left_out(report, "extrapolation");
+	render->boosted = decision->n > 1 && ran(report, "compensate") && !left_out(report, "boost");
+	render->front_plain = !render->boosted && decision->phase == 0.0;
+	if (frame)
+		frame->boosted = render->boosted;
+	render->showing.next_submit_ns = next ? grid_time(&render->grid, next) - lead : 0;
+}
+
+void draw_real(struct render *render, uint64_t now_ns)
+{
+	struct presenter_image image;
+	draw_count_report(render);
+	if (!take(render, now_ns)) {
+		render->take_again_ns = grid_time(&render->grid, grid_at_or_after(&render->grid, now_ns + 1));
+		return;
+	}
+	const uint64_t cost = render->real_cost.count ? render->real_cost.safe_ns : 5 * MS;
+	uint64_t vblank = grid_at_or_after(&render->grid, now_ns + cost);
+	if (vblank <= render->real_vblank)
+		vblank = render->real_vblank + 1;
+	struct pacer_decision decision = pacer_decide(&render->pacer, vblank);
+	/* Vblanks of a pause that ends now are no misses. */
+	if (render->pause_vblanks > 0)
+		render_plan_pause_until(render, vblank);
+	if (!begin(render, &decision) || draw(render, ENGINE_SHOW_REAL, decision.phase, &image) < 0)
+		return;
+	cost_add(&render->real_cost, clock_now(render->clock) - now_ns);
+	if (queue_real(render, &image, &decision, &vblank) < 0) {
+		render->presenter->impl->release(render->presenter, &image);
+		return;
+	}
+	render->engine_delay_ns = 0;
+	settle_real(render, &decision, vblank);
+}
+
+/* ---- the others ---- */
+
+void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank)
+{
+	const uint64_t start_ns = clock_now(render->clock);
+	struct presenter_image image;
+	if (draw(render, ENGINE_SHOW_IN_BETWEEN, decision->phase, &image) < 0)
+		return;
+	cost_add(&render->between_cost, clock_now(render->clock) - start_ns);
+	if (queue(render, &image, vblank, STATS_IN_BETWEEN, decision->phase) < 0) {
+		render->presenter->impl->release(render->presenter, &image);
+		pacer_missed(&render->pacer, decision);
+		return;
+	}
+	render->front_plain = false;
+}
+
+void draw_plain(struct render *render, uint64_t vblank)
+{
+	const uint64_t start_ns = clock_now(render->clock);
+	struct presenter_image image;
+	render->standby_done = true;
+	if (draw(render, ENGINE_SHOW_PLAIN, 0.0, &image) < 0)
+		return;
+	cost_add(&render->plain_cost, clock_now(render->clock) - start_ns);
+	if (vblank != 0) {
+		if (queue(render, &image, vblank, STATS_REPEAT, 0.0) < 0)
+			render->presenter->impl->release(render->presenter, &image);
+		else
+			render->front_plain = true;
+		return;
+	}
+	const struct showing_picture picture = {.serial = ++render->serial,
+											.group = render->group,
+											.show = STATS_STANDBY,
+											.ready_ns = clock_now(render->clock)};
+	showing_add_picture(&render->showing, &picture);
+	render->presenter->impl->set_standby(render->presenter, &image, render->group, picture.serial);
+}

@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/output.h"
+
+#include <errno.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/prctl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "daemon/render.h"
+
+#define FLIPS 64u
+
+struct output {
+	struct output_params params;
+	pthread_t thread;
+	int event_fd;
+
+	pthread_mutex_t lock; /* the mailbox */
+	pthread_cond_t wake;
+	bool stop, woken, streams_changed;
+	bool started; /* the thread has said whether it could start */
+	int start_result;
+	struct error start_error;
+	struct stream *streams[OUTPUT_STREAMS]; /* referenced; in the order of opening */
+	uint32_t stream_count;
+	struct presenter_flip flips[FLIPS];
+	uint32_t flip_count;
+	struct output_event events[OUTPUT_EVENTS]; /* for main */
+	uint32_t event_count;
+	struct output_info info;
+
+	pthread_mutex_t stats_lock;
+	struct stats stats;
+
+	pthread_mutex_t record_lock;
+	struct recorder *recorder;
+
+	/* the render thread's own */
+	struct render render;
+	struct stream *own[OUTPUT_STREAMS]; /* referenced copy of streams */
+	uint32_t own_count;
+};
+
+/* ---- called by the render thread's work ---- */
+
+static void lock_stats(void *data)
+{
+	pthread_mutex_lock(&((struct output *)data)->stats_lock);
+}
+
+static void unlock_stats(void *data)
+{
+	pthread_mutex_unlock(&((struct output *)data)->stats_lock);
+}
+
+static void record(void *data, const struct frame *frame)
+{
+	struct output *output = data;
+	pthread_mutex_lock(&output->record_lock);
+	if (output->recorder)
+		recorder_push(output->recorder, frame, frame->intake_ns);
+	pthread_mutex_unlock(&output->record_lock);
+}
+
+static void push_event(struct output *output, const struct output_event *event)
+{
+	const uint64_t one = 1;
+	pthread_mutex_lock(&output->lock);
+	if (output->event_count < OUTPUT_EVENTS)
+		output->events[output->event_count++] = *event;
+	pthread_mutex_unlock(&output->lock);
+	/* A full counter wakes just as well. */
+	if (write(output->event_fd, &one, sizeof(one)) < 0 && errno != EAGAIN)
+		log_error(output->params.log, "eventfd: %s", strerror(errno));
+}
+
+static void report(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal)
+{
+	struct output *output = data;
+	const struct output_event event = {kind, stream->client_id, stream->stream_id, *refusal};
+	if (kind == OUTPUT_STREAM_BROKEN)
+		atomic_store(&stream->ended, true);
+	else if (!log_limit_allows(&stream->log_limit, clock_now(output->params.clock)))
+		return;
+	push_event(output, &event);
+}
+
+static void engine_made(void *data, const struct engine_info *info)
+{
+	struct output *output = data;
+	pthread_mutex_lock(&output->lock);
+	snprintf(output->info.renderer, sizeof(output->info.renderer), "%s", info->renderer ? info->renderer : "");
+	snprintf(output->info.context, sizeof(output->info.context), "%s", info->context ? info->context : "");
+	output->info.software = info->software;
+	pthread_mutex_unlock(&output->lock);
+}
+
+/* On the presenter's thread. */
+static void on_flip(void *data, const struct presenter_flip *flip)
+{
+	struct output *output = data;
+	pthread_mutex_lock(&output->lock);
+	if (output->flip_count < FLIPS)
+		output->flips[output->flip_count++] = *flip;
+	else
+		output->flips[FLIPS - 1].skipped++; /* a render thread that hangs this long has more to worry about */
+	output->woken = true;
+	pthread_cond_signal(&output->wake);
+	pthread_mutex_unlock(&output->lock);
+}
+
+/* ---- the render thread ---- */
+
+/* Sleeps until time_ns or until woken. */
+static void wait_for_work(struct output *output, uint64_t time_ns)
+{
+	const struct timespec then = {(time_t)(time_ns / UINT64_C(1000000000)), (long)(time_ns % UINT64_C(1000000000))};
+	pthread_mutex_lock(&output->lock);
+	while (!output->woken && !output->stop) {
+		if (time_ns == RENDER_NEVER)
+			pthread_cond_wait(&output->wake, &output->lock);
+		else if (pthread_cond_timedwait(&output->wake, &output->lock, &then) == ETIMEDOUT)
+			break;
+	}
+	pthread_mutex_unlock(&output->lock);
+}
+
+/* Takes over the new list; references are dropped without the lock. */
+static void adopt_streams(struct output *output, struct stream *const *streams, uint32_t count)
+{
+	struct stream *old[OUTPUT_STREAMS];
+	const uint32_t old_count = output->own_count;
+	memcpy(old, output->own, sizeof(old));
+	memcpy(output->own, streams, count * sizeof(streams[0]));
+	output->own_count = count;
+	render_set_stream(&output->render, count ? streams[count - 1] : NULL);
+	for (uint32_t i = 0; i < old_count; i++)
+		stream_release(&old[i]);
+}
+
+/* Empties the mailbox. False: stop. */
+static bool read_mailbox(struct output *output)
+{
+	struct presenter_flip flips[FLIPS];
+	struct stream *streams[OUTPUT_STREAMS];
+	uint32_t stream_count = 0;
+
+	pthread_mutex_lock(&output->lock);
+	const bool go_on = !output->stop, changed = output->streams_changed;
+	const uint32_t flip_count = output->flip_count;
+	memcpy(flips, output->flips, flip_count * sizeof(flips[0]));
+	for (; changed && stream_count < output->stream_count; stream_count++)
+		streams[stream_count] = stream_reference(output->streams[stream_count]);
+	output->flip_count = 0;
+	output->streams_changed = false;
+	output->woken = false;
+	pthread_mutex_unlock(&output->lock);
+
+	for (uint32_t i = 0; i < flip_count; i++)
+		render_flip(&output->render, &flips[i]);
+	if (changed)
+		adopt_streams(output, streams, stream_count);
+	for (uint32_t i = 0; i + 1 < output->own_count; i++)
+		if (!atomic_load(&output->own[i]->ended))
+			render_skip_frames(&output->render, output->own[i]);
+	return go_on;
+}
+
+static int start(struct output *output)
+{
+	const struct settings *settings = output->params.settings;
+	const struct presenter_params presenter_params = {
+		.clock = output->params.clock,
+		.log = output->params.log,
+		.refresh_numerator = settings->refresh_numerator,
+		.refresh_denominator = settings->refresh_denominator,
+		.flip = on_flip,
+		.data = output,
+	};
+	output->render = (struct render){
+		.settings = settings,
+		.clock = output->params.clock,
+		.log = output->params.log,
+		.stats = &output->stats,
+		.owner = {output, lock_stats, unlock_stats, record, report, engine_made},
+	};
+	struct error error = {""};
+	const int result = render_init(&output->render, &presenter_params, &error);
+	pthread_mutex_lock(&output->lock);
+	output->started = true;
+	output->start_result = result;
+	output->start_error = error;
+	if (result == 0) {
+		output->info.grid = output->render.grid;
+		snprintf(output->info.presenter, sizeof(output->info.presenter), "%s", output->render.presenter->impl->name);
+	}
+	pthread_cond_broadcast(&output->wake);
+	pthread_mutex_unlock(&output->lock);
+	return result;
+}
+
+static void *run(void *data)
+{
+	struct output *output = data;
+	pthread_setname_np(pthread_self(), "pursuit-render");
+	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
+	if (start(output) == 0) {
+		while (read_mailbox(output)) {
+			const uint64_t next_ns = render_step(&output->render);
+			if (next_ns > clock_now(output->params.clock))
+				wait_for_work(output, next_ns);
+		}
+	}
+	adopt_streams(output, NULL, 0);
+	render_finish(&output->render);
+	return NULL;
+}
+
+/* ---- main thread ---- */
+
+static void free_output(struct output *output)
+{
+	if (output->event_fd >= 0)
+		close(output->event_fd);
+	pthread_cond_destroy(&output->wake);
+	pthread_mutex_destroy(&output->lock);
+	pthread_mutex_destroy(&output->stats_lock);
+	pthread_mutex_destroy(&output->record_lock);
+	free(output);
+}
+
+static struct output *allocate(const struct output_params *params)
+{
+	struct output *output = calloc(1, sizeof(*output));
+	pthread_condattr_t attributes;
+	if (!output)
+		return NULL;
+	output->params = *params;
+	output->event_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+	pthread_condattr_init(&attributes);
+	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+	pthread_cond_init(&output->wake, &attributes);
+	pthread_condattr_destroy(&attributes);
+	pthread_mutex_init(&output->lock, NULL);
+	pthread_mutex_init(&output->stats_lock, NULL);
+	pthread_mutex_init(&output->record_lock, NULL);
+	if (output->event_fd >= 0)
+		return output;
+	free_output(output);
+	return NULL;
+}
+
+struct output *output_create(const struct output_params *params, struct error *error)
+{
+	struct output *output = allocate(params);
+	if (!output) {
+		error_set(error, -ENOMEM, "output: out of memory or file descriptors");
+		return NULL;
+	}
+	const int result = pthread_create(&output->thread, NULL, run, output);
+	if (result != 0) {
+		error_set(error, -result, "output: cannot start a thread: %s", strerror(result));
+		free_output(output);
+		return NULL;
+	}
+	pthread_mutex_lock(&output->lock);
+	while (!output->started)
+		pthread_cond_wait(&output->wake, &output->lock);
+	pthread_mutex_unlock(&output->lock);
+	if (output->start_result < 0) {
+		*error = output->start_error;
+		pthread_join(output->thread, NULL);
+		free_output(output);
+		return NULL;
+	}
+	return output;
+}
+
+void output_destroy(struct output **output)
+{
+	struct output *self = *output;
+	*output = NULL;
+	if (!self)
+		return;
+	pthread_mutex_lock(&self->lock);
+	self->stop = true;
+	pthread_cond_signal(&self->wake);
+	pthread_mutex_unlock(&self->lock);
+	pthread_join(self->thread, NULL);
+	for (uint32_t i = 0; i < self->stream_count; i++)
+		stream_release(&self->streams[i]);
+	free_output(self);
+}
+
+/* With the lock. */
+static void wake_locked(struct output *output)
+{
+	output->woken = true;
+	pthread_cond_signal(&output->wake);
+}
+
+bool output_add_stream(struct output *output, struct stream *stream)
+{
+	pthread_mutex_lock(&output->lock);
+	const bool fits = output->stream_count < OUTPUT_STREAMS;
+	if (fits) {
+		output->streams[output->stream_count++] = stream_reference(stream);
+		output->streams_changed = true;
+		wake_locked(output);
+	}
+	pthread_mutex_unlock(&output->lock);
+	return fits;
+}
+
+void output_remove_stream(struct output *output, struct stream *stream)
+{
+	struct stream *found = NULL;
+	atomic_store(&stream->ended, true);
+	pthread_mutex_lock(&output->lock);
+	for (uint32_t i = 0; i < output->stream_count && !found; i++) {
+		if (output->streams[i] != stream)
+			continue;
+		found = stream;
+		output->stream_count--;
+		memmove(&output->streams[i], &output->streams[i + 1], (output->stream_count - i) * sizeof(output->streams[0]));
+		output->streams_changed = true;
+		wake_locked(output);
+	}
+	pthread_mutex_unlock(&output->lock);
+	stream_release(&found);
+}
+
+void output_wake(struct output *output)
+{
+	pthread_mutex_lock(&output->lock);
+	wake_locked(output);
+	pthread_mutex_unlock(&output->lock);
+}
+
+int output_event_fd(const struct output *output)
+{
+	return output->event_fd;
+}
+
+bool output_next_event(struct output *output, struct output_event *event)
+{
+	uint64_t count;
+	pthread_mutex_lock(&output->lock);
+	const bool any = output->event_count > 0;
+	if (any) {
+		*event = output->events[0];
+		output->event_count--;
+		memmove(&output->events[0], &output->events[1], output->event_count * sizeof(output->events[0]));
+	} else if (read(output->event_fd, &count, sizeof(count)) < 0) {
+		/* Nothing to clear. */
+	}
+	pthread_mutex_unlock(&output->lock);
+	return any;
+}
+
+struct recorder *output_set_recorder(struct output *output, struct recorder *recorder)
+{
+	pthread_mutex_lock(&output->record_lock);
+	struct recorder *before = output->recorder;
+	output->recorder = recorder;
+	pthread_mutex_unlock(&output->record_lock);
+	return before;
+}
+
+void output_get_info(struct output *output, struct output_info *info)
+{
+	pthread_mutex_lock(&output->lock);
+	*info = output->info;
+	pthread_mutex_unlock(&output->lock);
+}
+
+void output_get_stats(struct output *output, struct stats *stats)
+{
+	pthread_mutex_lock(&output->stats_lock);
+	*stats = output->stats;
+	pthread_mutex_unlock(&output->stats_lock);
+}

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * An output: presenter, pacer and engine on a render thread of its own. Streams
+ * are given to it; the one opened last is shown, frames of the others are taken
+ * and answered with REPLACED.
+ *
+ * The render thread takes frames in itself (the slot that it reads must not be
+ * exchanged meanwhile); main only wakes it. Main never waits for it, apart from
+ * output_create() and output_destroy().
+ */
+#ifndef PURSUIT_OUTPUT_H
+#define PURSUIT_OUTPUT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daemon/clock.h"
+#include "daemon/error.h"
+#include "daemon/intake.h"
+#include "daemon/log.h"
+#include "daemon/options.h"
+#include "daemon/present/grid.h"
+#include "daemon/record/recorder.h"
+#include "daemon/stats.h"
+
+#define OUTPUT_STREAMS 64u
+#define OUTPUT_EVENTS 64u
+
+/* What the render thread tells main. */
+enum output_event_kind {
+	OUTPUT_FRAME_REFUSED, /* the stream goes on */
+	OUTPUT_STREAM_BROKEN, /* nothing more is taken from it: end it */
+};
+
+struct output_event {
+	enum output_event_kind kind;
+	uint64_t client_id;
+	uint64_t stream_id;
+	struct refusal refusal;
+};
+
+struct output_params {
+	const struct settings *settings; /* must live as long */
+	struct clock *clock;
+	const struct log *log;
+};
+
+struct output_info {
+	char presenter[32];
+	char renderer[128], context[32];
+	bool software;
+	struct grid grid;
+};
+
+struct output;
+
+/* Starts the render thread and waits until engine and presenter are there. NULL with a sentence. */
+struct output *output_create(const struct output_params *params, struct error *error);
+/* Stops and joins. NULL accepted. */
+void output_destroy(struct output **output);
+
+/* ---- main thread ---- */
+
+/* Keeps a reference. False: too many streams. */
+bool output_add_stream(struct output *output, struct stream *stream);
+void output_remove_stream(struct output *output, struct stream *stream);
+
+/* Something may have changed: a stream has a new frame. Never waits long. */
+void output_wake(struct output *output);
+
+/* Readable when there are events; the next event, false if there is none. */
+int output_event_fd(const struct output *output);
+bool output_next_event(struct output *output, struct output_event *event);
+
+/* Frames taken from now on go to this recorder (NULL: none) too. Gives the one before back. */
+struct recorder *output_set_recorder(struct output *output, struct recorder *recorder);
+
+void output_get_info(struct output *output, struct output_info *info);
+/* A copy of the statistics. */
+void output_get_stats(struct output *output, struct stats *stats);
+
+#endif

@@ -1,0 +1,85 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/present/presenter.h"
+
+#include <errno.h>
+#include <string.h>
+
+#define NAME_BYTES 32
+
+static const struct presenter_impl *const impls[] = {&presenter_headless, NULL};
+
+/* All that the project knows of, so that "not built" and "unknown" are told apart. */
+static const char *const known[] = {"headless", "glfw", "kms"};
+
+const struct presenter_impl *const *presenter_impls(void)
+{
+	return impls;
+}
+
+/* Takes the next name off the list; false at its end. */
+static bool next_name(const char **list, char name[NAME_BYTES])
+{
+	*list += strspn(*list, ", ");
+	const size_t length = strcspn(*list, ", ");
+	if (length == 0)
+		return false;
+	snprintf(name, NAME_BYTES, "%.*s", (int)(length < NAME_BYTES ? length : NAME_BYTES - 1), *list);
+	*list += length;
+	return true;
+}
+
+static const struct presenter_impl *find(const char *name)
+{
+	for (size_t i = 0; impls[i]; i++)
+		if (strcmp(impls[i]->name, name) == 0)
+			return impls[i];
+	return NULL;
+}
+
+static int explain_missing(const char *name, struct error *error)
+{
+	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
+		if (strcmp(known[i], name) == 0)
+			return error_set(error, -EINVAL,
+							 "present: %s is not built into this pursuitd; use headless, or build with "
+							 "-Dpresenters=headless,%s",
+							 name, name);
+	return error_set(error, -EINVAL, "present: there is no presenter \"%s\"; there are headless, glfw and kms", name);
+}
+
+int presenter_check_list(const char *list, struct error *error)
+{
+	char name[NAME_BYTES];
+	bool any = false;
+	while (next_name(&list, name)) {
+		any = true;
+		if (!find(name))
+			return explain_missing(name, error);
+	}
+	return any ? 0 : error_set(error, -EINVAL, "present: the list is empty; there are headless, glfw and kms");
+}
+
+struct presenter *presenter_create(const char *list, const struct presenter_params *params, struct error *error)
+{
+	char name[NAME_BYTES];
+	error_set(error, -EINVAL, "present: the list is empty");
+	while (next_name(&list, name)) {
+		const struct presenter_impl *impl = find(name);
+		struct presenter *presenter = impl ? impl->create(params, error) : NULL;
+		if (presenter)
+			return presenter;
+		if (!impl)
+			explain_missing(name, error);
+		log_warning(params->log, "%s", error->text);
+	}
+	return NULL;
+}
+
+void presenter_destroy(struct presenter **presenter)
+{
+	if (*presenter)
+		(*presenter)->impl->destroy(*presenter);
+	*presenter = NULL;
+}

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* The daemon: reads settings, starts output and server, runs until a signal. */
+
+#include <errno.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "daemon/clock.h"
+#include "daemon/control.h"
+#include "daemon/log.h"
+#include "daemon/loop.h"
+#include "daemon/options.h"
+#include "daemon/output.h"
+#include "daemon/present/presenter.h"
+#include "daemon/server.h"
+#include "daemon/version.h"
+
+#define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_DAEMON)
+#define EXIT_USAGE 2
+
+struct pursuitd {
+	struct settings settings;
+	struct log log;
+	struct clock clock;
+	struct loop *loop;
+	struct output *output;
+	struct control *control;
+	struct server *server;
+};
+
+/* ---- the command line ---- */
+
+static int usage_error(const char *sentence)
+{
+	fprintf(stderr, "pursuitd: %s\nTry pursuitd --help.\n", sentence);
+	return EXIT_USAGE;
+}
+
+static void print_help(void)
+{
+	printf("Usage: pursuitd [--config FILE] [OPTIONS]\n\n"
+		   "Takes rendered frames from clients, makes the frames in between, and presents them.\n"
+		   "Stays in the foreground; SIGINT and SIGTERM end it.\n\n"
+		   "  %-30s %s\n  %-30s %s\n  %-30s %s\n  %-30s %s\n",
+		   "--config FILE", "Read settings from FILE; options that follow go before them.", "--print-config",
+		   "Print a configuration file with all defaults.", "--version", "Print the version.", "--help", "Print this.");
+	settings_print_help(ALL_GROUPS, stdout);
+	printf("\nMethods:\n");
+	for (const struct engine_method_info *method = engine_methods(); method->name; method++)
+		printf("  %-16s %s\n", method->name, method->description);
+	printf("\nPresenters built in:\n");
+	for (const struct presenter_impl *const *impl = presenter_impls(); *impl; impl++)
+		printf("  %-16s %s\n", (*impl)->name, (*impl)->description);
+}
+
+/* "--config FILE" and "--config=FILE": 1 taken, 0 not it, -1 refused with a sentence. */
+static int take_config(struct settings *settings, int argc, char **argv, int *index, struct error *error)
+{
+	const char *path;
+	if (strncmp(argv[*index], "--config=", 9) == 0) {
+		path = argv[*index] + 9;
+	} else if (strcmp(argv[*index], "--config") == 0) {
+		if (*index + 1 >= argc) {
+			error_set(error, -EINVAL, "--config needs a file");
+			return -1;
+		}
+		path = argv[++*index];
+	} else {
+		return 0;
+	}
+	return settings_load(settings, path, error) < 0 ? -1 : 1;
+}
+
+/* A name or a list that only the programs linked in can judge. */
+static int check_names(const struct settings *settings, struct error *error)
+{
+	char list[256] = "";
+	for (const struct engine_method_info *method = engine_methods(); method->name; method++) {
+		if (strcmp(method->name, settings->method) == 0)
+			return presenter_check_list(settings->present, error);
+		const size_t used = strlen(list);
+		snprintf(list + used, sizeof(list) - used, "%s%s", used ? ", " : "", method->name);
+	}
+	return error_set(error, -EINVAL, "method: there is no method \"%s\"; there are %s", settings->method, list);
+}
+
+static int refuse_argument(const char *argument)
+{
+	char sentence[256], name[64];
+	const char *nearest = NULL;
+	if (strncmp(argument, "--", 2) == 0) {
+		snprintf(name, sizeof(name), "%.*s", (int)strcspn(argument + 2, "="), argument + 2);
+		nearest = settings_nearest(name);
+	}
+	snprintf(sentence, sizeof(sentence), "%.100s: there is no such option%s%s%s", argument,
+			 nearest ? "; did you mean --" : "", nearest ? nearest : "", nearest ? "?" : "");
+	return usage_error(sentence);
+}
+
+/* -1 to go on, otherwise an exit status. */
+static int read_arguments(struct settings *settings, int argc, char **argv)
+{
+	struct error error = {""};
+	for (int i = 1; i < argc; i++) {
+		if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+			print_help();
+			return 0;
+		}
+		if (strcmp(argv[i], "--version") == 0) {
+			printf("pursuitd %s\n", PURSUITD_VERSION);
+			return 0;
+		}
+		if (strcmp(argv[i], "--print-config") == 0) {
+			settings_print_config(stdout);
+			return 0;
+		}
+		int taken = take_config(settings, argc, argv, &i, &error);
+		if (taken == 0)
+			taken = settings_argument(settings, ALL_GROUPS, argc, argv, &i, &error);
+		if (taken < 0)
+			return usage_error(error.text);
+		if (taken == 0)
+			return refuse_argument(argv[i]);
+	}
+	return check_names(settings, &error) < 0 ? usage_error(error.text) : -1;
+}
+
+/* ---- running ---- */
+
+/* Tells systemd, if it started us, that clients may come (sd_notify(3), by hand). */
+static void notify(const struct log *log, const char *state)
+{
+	const char *path = getenv("NOTIFY_SOCKET");
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	if (!path || (*path != '/' && *path != '@') || strlen(path) >= sizeof(address.sun_path))
+		return;
+	const size_t length = strlen(path);
+	memcpy(address.sun_path, path, length);
+	if (*path == '@')
+		address.sun_path[0] = 0;
+	const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+	if (fd < 0)
+		return;
+	if (sendto(fd, state, strlen(state), MSG_NOSIGNAL, (struct sockaddr *)&address,
+			   (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)) < 0)
+		log_warning(log, "NOTIFY_SOCKET: %s", strerror(errno));
+	close(fd);
+}
+
+static void on_signal(void *data, int number)
+{
+	struct pursuitd *daemon = data;
+	if (number == SIGHUP) {
+		log_info(&daemon->log, "SIGHUP: settings are read at the start only");
+		return;
+	}
+	log_info(&daemon->log, "%s: stopping", number == SIGINT ? "SIGINT" : "SIGTERM");
+	loop_quit(daemon->loop);
+}
+
+static int start(struct pursuitd *daemon, struct error *error)
+{
+	static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+	const struct output_params output_params = {&daemon->settings, &daemon->clock, &daemon->log};
+
+	signal(SIGPIPE, SIG_IGN);
+	signal(SIGXFSZ, SIG_IGN); /* a file size limit is met like a full disk */
+	clock_init_real(&daemon->clock);
+	daemon->loop = loop_create(error);
+	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)
+		return -1;
+	daemon->output = output_create(&output_params, error);
+	if (!daemon->output)
+		return -1;
+	const struct control_params control_params = {daemon->loop, &daemon->log, &daemon->clock, &daemon->settings,
+												  daemon->output};
+	daemon->control = control_create(&control_params, error);
+	if (!daemon->control)
+		return -1;
+	const struct server_params server_params = {daemon->loop,   &daemon->log,   &daemon->clock, &daemon->settings,
+												daemon->output, control_handle, daemon->control};
+	daemon->server = server_create(&server_params, error);
+	if (!daemon->server)
+		return -1;
+	control_set_server(daemon->control, daemon->server);
+	return 0;
+}
+
+static void announce(struct pursuitd *daemon)
+{
+	struct output_info info;
+	char refresh[64];
+	output_get_info(daemon->output, &info);
+	settings_get(&daemon->settings, "refresh", refresh, sizeof(refresh));
+	log_info(&daemon->log, "pursuitd %s: method %s, %s at %s Hz, %s (%s)", PURSUITD_VERSION, daemon->settings.method,
+			 info.presenter, refresh, info.renderer, info.context);
+	log_info(&daemon->log, "listening at %s", server_path(daemon->server));
+	notify(&daemon->log, "READY=1");
+}
+
+static bool write_stats_file(const struct pursuitd *daemon, const char *text)
+{
+	FILE *file = fopen(daemon->settings.stats, "we");
+	const bool written = file && fputs(text, file) >= 0 && fputc('\n', file) >= 0;
+	const bool closed = file && fclose(file) == 0;
+	if (!written || !closed)
+		log_error(&daemon->log, "%s: %s", daemon->settings.stats, strerror(errno));
+	return written && closed;
+}
+
+/* The last words: what was done. */
+static bool tell_stats(struct pursuitd *daemon)
+{
+	struct stats *stats = malloc(sizeof(*stats));
+	bool fine = true;
+	if (stats) {
+		output_get_stats(daemon->output, stats);
+		log_info(&daemon->log,
+				 "%" PRIu64 " real and %" PRIu64 " in-between frames shown, %" PRIu64 " in-betweens late, %" PRIu64
+				 " real frames lost, %.3f%% of %" PRIu64 " vblanks on time",
+				 stats->real_frames, stats->in_between_frames, stats->late_in_betweens, stats->lost_real_frames,
+				 stats->vblanks_due ? 100.0 * (double)stats->vblanks_on_time / (double)stats->vblanks_due : 100.0,
+				 stats->vblanks_due);
+	}
+	free(stats);
+	if (*daemon->settings.stats) {
+		char *text = control_status_text(daemon->control);
+		fine = text && write_stats_file(daemon, text);
+		free(text);
+	}
+	return fine;
+}
+
+static void stop(struct pursuitd *daemon)
+{
+	if (daemon->control)
+		control_set_server(daemon->control, NULL);
+	server_destroy(&daemon->server);
+	control_destroy(&daemon->control);
+	output_destroy(&daemon->output);
+	loop_destroy(&daemon->loop);
+}
+
+int main(int argc, char **argv)
+{
+	struct pursuitd daemon = {0};
+	struct error error = {""};
+	int status;
+
+	settings_defaults(&daemon.settings);
+	status = read_arguments(&daemon.settings, argc, argv);
+	if (status >= 0)
+		return status;
+	log_init(&daemon.log, (enum log_level)daemon.settings.log_level);
+	status = 0;
+	if (start(&daemon, &error) < 0) {
+		log_error(&daemon.log, "%s", error.text);
+		status = 1;
+	} else {
+		announce(&daemon);
+		if (loop_run(daemon.loop, &error) < 0) {
+			log_error(&daemon.log, "%s", error.text);
+			status = 1;
+		}
+		notify(&daemon.log, "STOPPING=1");
+		if (!tell_stats(&daemon))
+			status = 1;
+	}
+	stop(&daemon);
+	return status;
+}

@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/render.h"
+
+#include <errno.h>
+#include <string.h>
+
+/* Vblanks that may be drawn ahead; the presenter holds more. */
+#define AHEAD 4u
+/* After so long a pause the picture that stays is made the plain one (0.25 s at 120 Hz). */
+#define PLAIN_AFTER 30u
+/* And then the presenter sleeps, once that picture has been shown. */
+#define SLEEP_AFTER (PLAIN_AFTER + 4u)
+/* Before anything was measured. */
+#define FIRST_COST_NS UINT64_C(5000000)
+
+int render_init(struct render *render, const struct presenter_params *presenter_params, struct error *error)
+{
+	struct engine_params params;
+	int result = settings_engine_params(render->settings, &params, error);
+	if (result < 0)
+		return result;
+	render->engine = engine_create(&params, error);
+	if (!render->engine)
+		return -EIO;
+	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
+	render->presenter = presenter_create(render->settings->present, presenter_params, error);
+	if (!render->presenter)
+		return -ENODEV;
+	render->grid = *render->presenter->impl->get_grid(render->presenter);
+	showing_init(&render->showing, render->stats, grid_period_ns(&render->grid));
+	render->paused = true;
+	return 0;
+}
+
+void render_finish(struct render *render)
+{
+	presenter_destroy(&render->presenter);
+	engine_destroy(&render->engine);
+	showing_finish(&render->showing);
+}
+
+void render_set_stream(struct render *render, struct stream *stream)
+{
+	const struct pacer_params params = {.refresh_numerator = render->grid.numerator,
+										.refresh_denominator = render->grid.denominator,
+										.epoch_ns = render->grid.epoch_ns};
+	if (stream == render->stream)
+		return;
+	render->stream = stream;
+	pacer_init(&render->pacer, &params);
+}
+
+void render_skip_frames(struct render *render, struct stream *stream)
+{
+	struct frame frame;
+	struct refusal refusal;
+	const int result = stream_take(stream, clock_now(render->clock), &frame, &refusal);
+	if (result == 1) {
+		const struct pursuit_feedback report = {.frame_id = frame.header.frame_id,
+												.submit_ns = frame.header.submit_ns,
+												.intake_ns = frame.intake_ns,
+												.state = PURSUIT_FEEDBACK_REPLACED};
+		stream_feedback(stream, &report);
+	} else if (result < 0) {
+		render->owner.report(render->owner.data, result == -EPROTO ? OUTPUT_STREAM_BROKEN : OUTPUT_FRAME_REFUSED,
+							 stream, &refusal);
+	}
+}
+
+void render_flip(struct render *render, const struct presenter_flip *flip)
+{
+	render->owner.lock_stats(render->owner.data);
+	showing_flip(&render->showing, flip);
+	render->owner.unlock_stats(render->owner.data);
+}
+
+static uint64_t estimate(const struct cost *cost)
+{
+	return cost->count ? cost->safe_ns : FIRST_COST_NS;
+}
+
+static uint64_t before(uint64_t time_ns, uint64_t span_ns)
+{
+	return time_ns > span_ns ? time_ns - span_ns : 0;
+}
+
+void render_plan_pause_until(struct render *render, uint64_t vblank)
+{
+	for (; render->next_vblank < vblank; render->next_vblank++)
+		showing_plan(&render->showing, render->next_vblank, SHOWING_PAUSE);
+}
+
+/* Vblanks that went by undecided were missed, unless nothing was due; the flip events count them. */
+static void skip_passed(struct render *render, uint64_t now_ns)
+{
+	const uint64_t first = grid_at_or_after(&render->grid, now_ns + 1);
+	if (render->pause_vblanks > 0 && !render->paused && first - render->next_vblank < SHOWING_VBLANKS)
+		render_plan_pause_until(render, first);
+	if (render->next_vblank < first)
+		render->next_vblank = first;
+}
+
+/* ---- real frames ---- */
+
+/*
+ * When the newest frame may be begun: at once, unless that would give it a
+ * vblank that another real frame has already; then so late that it gets the
+ * next one. What arrives meanwhile replaces it.
+ */
+static uint64_t real_start(const struct render *render, uint64_t now_ns)
+{
+	const uint64_t cost = estimate(&render->real_cost);
+	if (!render->begun || grid_at_or_after(&render->grid, now_ns + cost) > render->real_vblank)
+		return 0;
+	return before(grid_time(&render->grid, render->real_vblank), cost) + 1;
+}
+
+/* A vblank before the real frame's lacks its in-between, and drawing that does not cost the real frame its vblank. */
+static bool fits_before_real(const struct render *render, uint64_t now_ns)
+{
+	const uint64_t real = estimate(&render->real_cost), between = estimate(&render->between_cost);
+	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + real);
+	return render->begun && render->pause_vblanks == 0 && render->next_vblank < vblank &&
+		   now_ns + between <= grid_time(&render->grid, render->next_vblank) &&
+		   now_ns + between + real <= grid_time(&render->grid, vblank);
+}
+
+/* ---- pauses ---- */
+
+static void close_all_frames(struct render *render)
+{
+	render->owner.lock_stats(render->owner.data);
+	showing_close_frames(&render->showing, render->group + 1);
+	render->owner.unlock_stats(render->owner.data);
+}
+
+/* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */
+static void pause_once(struct render *render)
+{
+	const uint64_t vblank = render->next_vblank++;
+	showing_plan(&render->showing, vblank, SHOWING_PAUSE);
+	render->showing.pausing = true;
+	if (render->pause_vblanks++ == 0)
+		render->presenter->impl->clear_standby(render->presenter);
+	if (render->pause_vblanks == PLAIN_AFTER) {
+		close_all_frames(render);
+		draw_count_report(render);
+		if (!render->front_plain && render->begun && render->engine)
+			draw_plain(render, vblank);
+	}
+	if (render->pause_vblanks >= SLEEP_AFTER) {
+		render->presenter->impl->pause(render->presenter);
+		render->showing.last_flip_ns = 0;
+		render->paused = true;
+	}
+}
+
+/* The stream is gone: the plain picture soon. */
+static uint64_t wind_down(struct render *render, uint64_t now_ns)
+{
+	if (render->paused)
+		return RENDER_NEVER;
+	const uint64_t start = before(grid_time(&render->grid, render->next_vblank), estimate(&render->real_cost));
+	if (now_ns < start)
+		return start;
+	if (render->pause_vblanks < PLAIN_AFTER - 1) {
+		render->presenter->impl->clear_standby(render->presenter);
+		render->pause_vblanks = PLAIN_AFTER - 1;
+	}
+	pause_once(render);
+	return 0;
+}
+
+/* ---- between real frames ---- */
+
+static uint64_t later_of(uint64_t a, uint64_t b)
+{
+	return a > b ? a : b;
+}
+
+/* When the picture of next_vblank is to be begun. */
+static uint64_t between_start(const struct render *render)
+{
+	const uint64_t vblank = render->next_vblank, time_ns = grid_time(&render->grid, vblank);
+	const uint64_t costs = later_of(estimate(&render->real_cost), estimate(&render->between_cost));
+	if (vblank >= render->real_vblank + render->n || render->pause_vblanks > 0)
+		return before(time_ns, costs);
+	/* Not further ahead than the presenter's queue holds. */
+	return vblank > AHEAD ? grid_time(&render->grid, vblank - AHEAD) : 0;
+}
+
+/* The plain picture that stands by comes first if there is time, or if the in-between is late anyway. */
+static bool standby_first(const struct render *render, uint64_t now_ns)
+{
+	if (!render->boosted || render->standby_done || render->n < 2 || render->pause_vblanks > 0)
+		return false;
+	const uint64_t time_ns = grid_time(&render->grid, render->next_vblank);
+	const uint64_t plain = estimate(&render->plain_cost), between = estimate(&render->between_cost);
+	return now_ns + plain + between <= time_ns || now_ns + render->between_cost.usual_ns > time_ns ||
+		   render->next_vblank > render->real_vblank + 1;
+}
+
+/* With `urgent` at once: a real frame waits for it. */
+static uint64_t show_between(struct render *render, uint64_t now_ns, bool urgent)
+{
+	const uint64_t start = urgent ? 0 : between_start(render);
+	if (now_ns < start)
+		return start;
+	if (standby_first(render, now_ns)) {
+		draw_plain(render, 0);
+		return 0;
+	}
+	const uint64_t vblank = render->next_vblank;
+	const struct pacer_decision decision = pacer_decide(&render->pacer, vblank);
+	if (decision.show == PACER_REPEAT && pacer_passes_through(&render->pacer) &&
+		vblank - render->real_vblank < PLAIN_AFTER) {
+		showing_plan(&render->showing, vblank, SHOWING_REPEAT);
+		render->next_vblank++;
+	} else if (decision.show != PACER_IN_BETWEEN) {
+		pause_once(render);
+	} else if (render->still) {
+		showing_plan(&render->showing, vblank, SHOWING_REPEAT);
+		render->next_vblank++;
+	} else {
+		showing_plan(&render->showing, vblank, SHOWING_IN_BETWEEN);
+		render->next_vblank++;
+		/* Late beyond doubt: not worth the time that the next one needs. */
+		if (now_ns + render->between_cost.usual_ns <= decision.target_ns)
+			draw_in_between(render, &decision, vblank);
+	}
+	return 0;
+}
+
+uint64_t render_step(struct render *render)
+{
+	const uint64_t now_ns = clock_now(render->clock);
+	uint64_t wake_ns = RENDER_NEVER;
+	bool urgent = false;
+
+	if (!draw_revive_engine(render, now_ns))
+		return render->engine_retry_ns;
+	skip_passed(render, now_ns);
+	if (render->stream && !atomic_load(&render->stream->ended) && stream_has_frame(render->stream)) {
+		wake_ns = later_of(real_start(render, now_ns), render->take_again_ns);
+		urgent = now_ns >= wake_ns;
+		if (urgent && !fits_before_real(render, now_ns)) {
+			draw_real(render, now_ns);
+			return 0;
+		}
+	}
+	if (render->paused)
+		return wake_ns;
+	const bool moves = render->stream && render->begun && render->pacer.has_frame;
+	const uint64_t next_ns = moves ? show_between(render, now_ns, urgent) : wind_down(render, now_ns);
+	return next_ns < wake_ns ? next_ns : wake_ns;
+}

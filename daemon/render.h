@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The render thread's work, in steps that return when the next one is due.
+ * Private to the output: output.c calls it, render.c decides, draw.c draws.
+ *
+ * A step does the most urgent thing that can be done now:
+ *   1. take a real frame and draw it for the first vblank that it can reach;
+ *   2. draw the plain picture that stands by for late in-betweens;
+ *   3. draw the in-between for the next vblank that has no picture, up to the
+ *      vblank where the next real frame is expected; beyond it only when that
+ *      vblank can no longer get a real one.
+ */
+#ifndef PURSUIT_RENDER_H
+#define PURSUIT_RENDER_H
+
+#include <pthread.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daemon/cost.h"
+#include "daemon/engine/engine.h"
+#include "daemon/output.h"
+#include "daemon/present/pacer.h"
+#include "daemon/present/presenter.h"
+#include "daemon/showing.h"
+
+#define RENDER_NEVER UINT64_MAX
+
+/* What the render thread calls on its owner. */
+struct render_owner {
+	void *data;
+	void (*lock_stats)(void *data);
+	void (*unlock_stats)(void *data);
+	void (*record)(void *data, const struct frame *frame);
+	void (*report)(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal);
+	void (*engine_made)(void *data, const struct engine_info *info);
+};
+
+struct render {
+	const struct settings *settings;
+	struct clock *clock;
+	const struct log *log;
+	struct render_owner owner;
+	struct engine *engine;
+	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
+	struct presenter *presenter;
+	struct grid grid;
+	struct pacer pacer;
+	struct showing showing;
+	struct stats *stats; /* under the owner's lock */
+	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
+
+	struct frame frame;    /* begun last */
+	uint64_t take_again_ns; /* after a refused frame: one look a vblank is enough for a client that sends nonsense */
+	bool begun;            /* the engine has it */
+	bool report_due;       /* the engine's report about it was not counted yet */
+	bool boosted;          /* it gives light that in-betweens take away */
+	bool still;            /* its in-betweens look like itself */
+	bool standby_done;
+	bool front_plain;      /* the picture queued last may stay for good */
+	uint64_t group, serial;
+	uint32_t n;
+	uint64_t real_vblank;  /* of its first showing */
+	uint64_t next_vblank;  /* first one that was not decided */
+	uint32_t pause_vblanks; /* that nothing was due at, in a row */
+	bool paused;           /* the presenter sleeps */
+	struct cost real_cost, between_cost, plain_cost;
+};
+
+/* On the render thread. 0 or -errno with a sentence. */
+int render_init(struct render *render, const struct presenter_params *presenter_params, struct error *error);
+void render_finish(struct render *render);
+
+/* Shows this stream from now on (NULL: none; the picture stays). */
+void render_set_stream(struct render *render, struct stream *stream);
+/* A stream that is not shown: its frames are taken and answered. */
+void render_skip_frames(struct render *render, struct stream *stream);
+/* A vblank is over. */
+void render_flip(struct render *render, const struct presenter_flip *flip);
+
+/* Does one thing, or nothing. The time when the next step is due: 0 at once, RENDER_NEVER only when something happens. */
+uint64_t render_step(struct render *render);
+
+/* Nothing is due at the vblanks from next_vblank to before this one. */
+void render_plan_pause_until(struct render *render, uint64_t vblank);
+
+/* ---- draw.c ---- */
+
+/* Takes the newest frame and draws it, unless it is refused. */
+void draw_real(struct render *render, uint64_t now_ns);
+/* Draws the in-between that was decided for this vblank. */
+void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank);
+/* Draws the plain picture, as standby or, for a vblank > 0, to be shown there. */
+void draw_plain(struct render *render, uint64_t vblank);
+/* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
+void draw_count_report(struct render *render);
+/* Makes a lost engine anew when its time has come. Is there one? */
+bool draw_revive_engine(struct render *render, uint64_t now_ns);
+
+#endif

@@ -1,0 +1,285 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/server.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "daemon/client.h"
+#include "daemon/listener.h"
+
+/* A connection that has not said HELLO for so long makes room for another. */
+#define SILENCE_NS UINT64_C(1000000000)
+#define ACCEPT_AT_ONCE 16
+
+struct server {
+	struct server_params params;
+	struct listener listener;
+	struct loop_source *accept_source, *event_source;
+	int reserve_fd; /* given up for a moment when there are no file descriptors left */
+	struct client *clients;
+	uint32_t client_count;
+	uint64_t next_id;
+	struct packet *packet;
+};
+
+/* ---- clients ---- */
+
+static struct client *find_client(const struct server *server, uint64_t id)
+{
+	for (struct client *client = server->clients; client; client = client->next)
+		if (client->id == id)
+			return client;
+	return NULL;
+}
+
+static void remove_client(struct server *server, struct client *client)
+{
+	struct client **link = &server->clients;
+	while (*link != client)
+		link = &(*link)->next;
+	*link = client->next;
+	server->client_count--;
+	log_debug(server->params.log, "client %s (pid %d) is gone", client->name, (int)client->pid);
+	client_destroy(&client);
+}
+
+static void remove_gone(struct server *server)
+{
+	struct client *next;
+	for (struct client *client = server->clients; client; client = next) {
+		next = client->next;
+		if (client->gone)
+			remove_client(server, client);
+	}
+}
+
+static void on_client(void *data, uint32_t events)
+{
+	struct client *client = data;
+	struct server *server = (struct server *)((uintptr_t)client->params - offsetof(struct server, params));
+	client_read(client, events);
+	remove_gone(server);
+}
+
+/* Room for one more, if need be by dropping one that never spoke. */
+static bool make_room(struct server *server)
+{
+	const uint64_t now_ns = clock_now(server->params.clock);
+	struct client *oldest = NULL;
+	if (server->client_count < server->params.settings->max_clients)
+		return true;
+	for (struct client *client = server->clients; client; client = client->next)
+		if (!client->greeted && now_ns - client->connected_ns > SILENCE_NS)
+			oldest = client;
+	if (oldest)
+		remove_client(server, oldest);
+	return oldest != NULL;
+}
+
+static void turn_away(struct server *server, int fd)
+{
+	struct pursuit_message_refused message = {
+		.header = {.type = PURSUIT_MESSAGE_REFUSED, .size = sizeof(message)},
+		.code = PURSUIT_REFUSED_LIMIT,
+		.fatal = 1,
+		.value = server->client_count,
+		.field = "clients",
+	};
+	snprintf(message.text, sizeof(message.text),
+			 "clients is %" PRIu32 ", the most that this daemon serves (max-clients)", server->client_count);
+	packet_send(fd, &message, sizeof(message), -1);
+	packet_drain(fd);
+	close(fd);
+	log_warning(server->params.log, "%s", message.text);
+}
+
+static void add_client(struct server *server, int fd)
+{
+	if (!make_room(server)) {
+		turn_away(server, fd);
+		return;
+	}
+	struct client *client = client_create(&server->params, server->packet, fd, server->next_id++);
+	if (!client) {
+		close(fd);
+		return;
+	}
+	client->source = loop_add(server->params.loop, fd, EPOLLIN | EPOLLRDHUP, on_client, client);
+	if (!client->source) {
+		client_destroy(&client);
+		return;
+	}
+	client->next = server->clients;
+	server->clients = client;
+	server->client_count++;
+}
+
+/* Without file descriptors a waiting connection would wake the loop for ever: take it and hang up. */
+static void hang_up_one(struct server *server)
+{
+	if (server->reserve_fd >= 0)
+		close(server->reserve_fd);
+	const int fd = accept4(server->listener.fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+	if (fd >= 0)
+		close(fd);
+	server->reserve_fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
+	log_error(server->params.log, "out of file descriptors: a client was turned away");
+}
+
+static void on_accept(void *data, uint32_t events)
+{
+	struct server *server = data;
+	(void)events;
+	for (int i = 0; i < ACCEPT_AT_ONCE; i++) {
+		const int fd = accept4(server->listener.fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
+		if (fd >= 0) {
+			add_client(server, fd);
+		} else if (errno == EMFILE || errno == ENFILE) {
+			hang_up_one(server);
+			return;
+		} else if (errno != ECONNABORTED && errno != EINTR) {
+			return;
+		}
+	}
+}
+
+/* ---- what the render thread has found ---- */
+
+static void on_output_event(void *data, uint32_t events)
+{
+	struct server *server = data;
+	struct output_event event;
+	(void)events;
+	while (output_next_event(server->params.output, &event)) {
+		struct client *client = find_client(server, event.client_id);
+		struct client_stream *stream = client ? client_find_stream(client, event.stream_id) : NULL;
+		if (!stream)
+			continue;
+		client_refuse(client, 0, event.stream_id, false, &event.refusal);
+		if (event.kind == OUTPUT_STREAM_BROKEN)
+			client_close_stream(stream, 0);
+	}
+	remove_gone(server);
+}
+
+/* ---- life ---- */
+
+static int start(struct server *server, struct error *error)
+{
+	const int result = listener_init(&server->listener, server->params.settings->socket, error);
+	if (result < 0)
+		return result;
+	server->packet = calloc(1, sizeof(*server->packet));
+	server->reserve_fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
+	server->accept_source = loop_add(server->params.loop, server->listener.fd, EPOLLIN, on_accept, server);
+	server->event_source =
+		loop_add(server->params.loop, output_event_fd(server->params.output), EPOLLIN, on_output_event, server);
+	if (!server->packet || !server->accept_source || !server->event_source)
+		return error_set(error, -ENOMEM, "server: out of memory");
+	return 0;
+}
+
+struct server *server_create(const struct server_params *params, struct error *error)
+{
+	struct server *server = calloc(1, sizeof(*server));
+	if (!server) {
+		error_set(error, -ENOMEM, "server: out of memory");
+		return NULL;
+	}
+	server->params = *params;
+	server->next_id = 1;
+	server->reserve_fd = -1;
+	server->listener.fd = server->listener.lock_fd = -1;
+	if (start(server, error) < 0)
+		server_destroy(&server);
+	return server;
+}
+
+void server_destroy(struct server **server)
+{
+	struct server *self = *server;
+	struct refusal refusal;
+	*server = NULL;
+	if (!self)
+		return;
+	refuse(&refusal, 0, PURSUIT_REFUSED_SHUTDOWN, "", 0, "the daemon is stopping");
+	while (self->clients) {
+		struct client *client = self->clients;
+		client_refuse(client, 0, 0, true, &refusal);
+		remove_client(self, client);
+	}
+	loop_remove(&self->accept_source);
+	loop_remove(&self->event_source);
+	listener_finish(&self->listener);
+	if (self->reserve_fd >= 0)
+		close(self->reserve_fd);
+	free(self->packet);
+	free(self);
+}
+
+const char *server_path(const struct server *server)
+{
+	return server->listener.path;
+}
+
+uint32_t server_client_count(const struct server *server)
+{
+	return server->client_count;
+}
+
+/* ---- control ---- */
+
+void server_reply(struct server *server, uint64_t client_id, uint32_t serial, int status, const char *text)
+{
+	struct client *client = find_client(server, client_id);
+	const size_t most = PURSUIT_WIRE_MAX_PACKET - sizeof(struct pursuit_message_control);
+	size_t length = strlen(text);
+	if (!client)
+		return;
+	if (length > most)
+		length = most;
+	const size_t bytes = sizeof(struct pursuit_message_control) + length;
+	uint8_t *packet = malloc(bytes);
+	if (!packet)
+		return;
+	const struct pursuit_message_control header = {
+		.header = {.type = PURSUIT_MESSAGE_CONTROL_REPLY, .size = (uint32_t)bytes, .serial = serial},
+		.status = (uint32_t)(status < 0 ? -status : status),
+		.text_bytes = (uint32_t)length,
+	};
+	memcpy(packet, &header, sizeof(header));
+	memcpy(packet + sizeof(header), text, length);
+	client_send(client, packet, bytes, -1);
+	free(packet);
+}
+
+static json_t *stream_json(const struct client *client, struct stream *stream)
+{
+	struct stream_counters *c = &stream->counters;
+	const uint64_t interval_ns = atomic_load(&c->interval_ns);
+	return json_pack("{s:I, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id", (json_int_t)stream->stream_id,
+					 "client", client->name, "pid", (int)client->pid, "uid", (int)client->uid, "width",
+					 (int)atomic_load(&c->width), "height", (int)atomic_load(&c->height), "frame_id",
+					 (json_int_t)atomic_load(&c->last_frame_id), "real_frames",
+					 (json_int_t)atomic_load(&c->real_frames), "refused_frames",
+					 (json_int_t)atomic_load(&c->refused_frames), "lost_real_frames",
+					 (json_int_t)atomic_load(&c->lost_frames), "fps", interval_ns ? 1e9 / (double)interval_ns : 0.0);
+}
+
+json_t *server_streams_json(const struct server *server)
+{
+	json_t *array = json_array();
+	for (const struct client *client = server->clients; client; client = client->next)
+		for (uint32_t i = 0; i < PURSUIT_MAX_STREAMS_PER_CLIENT; i++)
+			if (client->streams[i].stream)
+				json_array_append_new(array, stream_json(client, client->streams[i].stream));
+	return array;
+}

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The server: clients on sockets, their streams, the conversation of
+ * proto/wire.h. Everything that arrives is checked; a client that breaks a rule
+ * is told which and, if the packet itself is malformed, dropped; the others do
+ * not notice. A client that does not read its socket is dropped when the socket
+ * is full. Runs on main.
+ */
+#ifndef PURSUIT_SERVER_H
+#define PURSUIT_SERVER_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daemon/clock.h"
+#include "daemon/error.h"
+#include "daemon/log.h"
+#include "daemon/loop.h"
+#include "daemon/options.h"
+#include "daemon/output.h"
+
+struct server;
+
+struct server_params {
+	struct loop *loop;
+	const struct log *log;
+	struct clock *clock;
+	const struct settings *settings;
+	struct output *output;
+	/*
+	 * A CONTROL request: answer with server_reply(), now or later. fd: came
+	 * with it, -1 none; the callee's.
+	 */
+	void (*control)(void *data, uint64_t client_id, uint32_t serial, const char *text, int fd);
+	void *data;
+};
+
+/* Listens. NULL with a sentence. */
+struct server *server_create(const struct server_params *params, struct error *error);
+/* Tells every client SHUTDOWN and closes; the socket is removed. NULL accepted. */
+void server_destroy(struct server **server);
+
+const char *server_path(const struct server *server);
+
+/* Answers a CONTROL request; a client that is gone meanwhile is no error. Cut to what fits a packet. */
+void server_reply(struct server *server, uint64_t client_id, uint32_t serial, int status, const char *text);
+
+/* One object per stream; the one that was opened last is shown. */
+json_t *server_streams_json(const struct server *server);
+uint32_t server_client_count(const struct server *server);
+
+#endif

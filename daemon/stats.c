@@ -1,0 +1,156 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/stats.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SMALLEST 0.001
+#define CLASS_RATIO 1.01
+
+void stats_spread_add(struct stats_spread *spread, double value)
+{
+	double index = value > SMALLEST ? log(value / SMALLEST) / log(CLASS_RATIO) : 0.0;
+	if (!(index >= 0.0))
+		index = 0.0;
+	if (index > STATS_CLASSES - 1)
+		index = STATS_CLASSES - 1;
+	spread->classes[(uint32_t)index]++;
+	spread->count++;
+}
+
+double stats_spread_percentile(const struct stats_spread *spread, double share)
+{
+	const double wanted = share * (double)spread->count;
+	uint64_t seen = 0;
+	if (spread->count == 0)
+		return 0.0;
+	for (uint32_t i = 0; i < STATS_CLASSES; i++) {
+		seen += spread->classes[i];
+		if (seen > 0 && (double)seen >= wanted)
+			return SMALLEST * pow(CLASS_RATIO, i + 0.5);
+	}
+	return SMALLEST * pow(CLASS_RATIO, STATS_CLASSES);
+}
+
+const char *stats_show_name(enum stats_show show)
+{
+	static const char *const names[] = {"real", "in-between", "repeat", "standby", "kept"};
+	return show <= STATS_KEPT ? names[show] : "";
+}
+
+static void add_name(struct stats_name *names, uint32_t *count, const char *name, uint64_t times)
+{
+	for (uint32_t i = 0; i < *count; i++) {
+		if (strcmp(names[i].name, name) == 0) {
+			names[i].count += times;
+			return;
+		}
+	}
+	if (*count < STATS_NAMES)
+		names[(*count)++] = (struct stats_name){name, times};
+}
+
+void stats_add_report(struct stats *stats, const struct engine_report *report)
+{
+	stats_spread_add(&stats->engine_ms, report->total_ms);
+	for (uint32_t i = 0; i < report->pass_count && i < ENGINE_MAX_PASSES; i++)
+		add_name(stats->passes, &stats->pass_count, report->passes[i].name, report->passes[i].runs);
+	for (uint32_t i = 0; i < report->left_out_count && i < ENGINE_MAX_LEFT_OUT; i++)
+		add_name(stats->left_out, &stats->left_out_count, report->left_out[i].name, 1);
+}
+
+void stats_add_row(struct stats *stats, const struct stats_row *row)
+{
+	stats->timeline[stats->timeline_count++ % STATS_TIMELINE] = *row;
+}
+
+/* ---- JSON ---- */
+
+static json_t *count_json(uint64_t count)
+{
+	return json_integer((json_int_t)count);
+}
+
+/* Microseconds are enough, and keep the text short. */
+static double rounded(double value)
+{
+	return round(value * 1000.0) / 1000.0;
+}
+
+static json_t *spread_json(const struct stats_spread *spread)
+{
+	return json_pack("{s:f, s:f}", "p50", rounded(stats_spread_percentile(spread, 0.50)), "p99",
+					 rounded(stats_spread_percentile(spread, 0.99)));
+}
+
+static json_t *names_json(const struct stats_name *names, uint32_t count)
+{
+	json_t *object = json_object();
+	for (uint32_t i = 0; i < count; i++)
+		json_object_set_new(object, names[i].name, count_json(names[i].count));
+	return object;
+}
+
+static double displayed_hz(const struct stats *stats)
+{
+	return stats->active_ns ? (double)stats->displayed_frames * 1e9 / (double)stats->active_ns : 0.0;
+}
+
+json_t *stats_json(const struct stats *stats)
+{
+	const struct {
+		const char *name;
+		uint64_t count;
+	} counts[] = {
+		{"real_frames", stats->real_frames},
+		{"in_between_frames", stats->in_between_frames},
+		{"repeated_frames", stats->repeated_frames},
+		{"standby_frames", stats->standby_frames},
+		{"displayed_frames", stats->displayed_frames},
+		{"late_in_betweens", stats->late_in_betweens},
+		{"late_real_frames", stats->late_real_frames},
+		{"lost_real_frames", stats->lost_real_frames},
+		{"received_frames", stats->received_frames},
+		{"refused_frames", stats->refused_frames},
+		{"vblanks", stats->vblanks_due},
+		{"vblanks_on_time", stats->vblanks_on_time},
+		{"late_flips", stats->late_flips},
+		{"unbalanced_vblanks", stats->unbalanced_vblanks},
+		{"engine_losses", stats->engine_losses},
+	};
+	json_t *object = json_object();
+	if (!object)
+		return NULL;
+	for (size_t i = 0; i < sizeof(counts) / sizeof(counts[0]); i++)
+		json_object_set_new(object, counts[i].name, count_json(counts[i].count));
+	json_object_set_new(object, "displayed_hz", json_real(rounded(displayed_hz(stats))));
+	json_object_set_new(
+		object, "on_time",
+		json_real(stats->vblanks_due ? (double)stats->vblanks_on_time / (double)stats->vblanks_due : 0.0));
+	json_object_set_new(object, "engine_ms", spread_json(&stats->engine_ms));
+	json_object_set_new(object, "submit_to_flip_ms", spread_json(&stats->submit_to_flip_ms));
+	json_object_set_new(object, "flip_error_ms", spread_json(&stats->flip_error_ms));
+	json_object_set_new(object, "passes", names_json(stats->passes, stats->pass_count));
+	json_object_set_new(object, "left_out", names_json(stats->left_out, stats->left_out_count));
+	return object;
+}
+
+static json_t *row_json(const struct stats_row *row)
+{
+	return json_pack("[I, I, I, I, I, s, f]", (json_int_t)row->vblank, (json_int_t)row->target_ns,
+					 (json_int_t)row->ready_ns, (json_int_t)row->flip_ns, (json_int_t)row->frame_id,
+					 stats_show_name((enum stats_show)row->show), rounded((double)row->phase));
+}
+
+json_t *stats_timeline_json(const struct stats *stats, uint64_t from, uint64_t count)
+{
+	const uint64_t oldest = stats->timeline_count > STATS_TIMELINE ? stats->timeline_count - STATS_TIMELINE : 0;
+	const uint64_t first = from > oldest ? from : oldest;
+	json_t *rows = json_array();
+	for (uint64_t i = first; i < stats->timeline_count && i - first < count; i++)
+		json_array_append_new(rows, row_json(&stats->timeline[i % STATS_TIMELINE]));
+	return json_pack("{s:I, s:I, s:o}", "first", (json_int_t)first, "total", (json_int_t)stats->timeline_count, "rows",
+					 rows);
+}

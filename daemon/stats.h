@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Statistics of one output: counters, percentiles, what ran, and the timeline
+ * of the last displayed frames. Knows no GL, no socket and no clock. Not
+ * locked: the output copies the struct under its own lock.
+ */
+#ifndef PURSUIT_STATS_H
+#define PURSUIT_STATS_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daemon/engine/engine.h"
+
+/*
+ * Percentiles of positive numbers over a whole run in constant memory: classes
+ * 1% wide from 0.001 up, so a percentile is right to half a percent.
+ */
+#define STATS_CLASSES 2000u
+
+struct stats_spread {
+	uint32_t classes[STATS_CLASSES];
+	uint64_t count;
+};
+
+void stats_spread_add(struct stats_spread *spread, double value);
+/* The value that a share (0 to 1) of all lies at or below; 0 for none at all. */
+double stats_spread_percentile(const struct stats_spread *spread, double share);
+
+enum stats_show {
+	STATS_REAL = 0,
+	STATS_IN_BETWEEN,
+	STATS_REPEAT,  /* the same picture again, as intended: nothing moves, or no newer frame of a fast stream */
+	STATS_STANDBY, /* plain picture for an in-between that was late */
+	STATS_KEPT,    /* nothing was there in time: the picture stayed */
+};
+const char *stats_show_name(enum stats_show show);
+
+/* One vblank. Times in ns, 0 unknown. */
+struct stats_row {
+	uint64_t vblank, target_ns, ready_ns, flip_ns, frame_id;
+	uint32_t show; /* enum stats_show */
+	float phase;
+};
+
+#define STATS_TIMELINE 4096u
+#define STATS_NAMES 24u
+
+struct stats_name {
+	const char *name; /* static */
+	uint64_t count;
+};
+
+struct stats {
+	uint64_t real_frames;       /* shown */
+	uint64_t in_between_frames; /* shown */
+	uint64_t repeated_frames;   /* vblanks that showed the same again, as intended */
+	uint64_t standby_frames;    /* vblanks that showed the plain picture instead of a late in-between */
+	uint64_t displayed_frames;  /* all of these four */
+	uint64_t late_in_betweens;  /* vblanks whose in-between was not ready */
+	uint64_t late_real_frames;  /* real frames shown at least a vblank later than aimed at */
+	uint64_t lost_real_frames;  /* real frames that never were shown */
+	uint64_t received_frames;   /* taken from the streams and valid */
+	uint64_t refused_frames;
+	uint64_t vblanks_due;       /* vblanks at which a picture was due: all but pauses */
+	uint64_t vblanks_on_time;   /* of these, with the intended picture, ready before and shown before the next */
+	uint64_t late_flips;        /* the presenter itself was late by a vblank or more */
+	uint64_t active_ns;         /* time over all vblanks due */
+	uint64_t engine_losses;
+	uint64_t unbalanced_vblanks; /* late in-betweens of boosted real frames: light that was missed, not carried */
+	struct stats_spread engine_ms, submit_to_flip_ms, flip_error_ms;
+	struct stats_name passes[STATS_NAMES], left_out[STATS_NAMES];
+	uint32_t pass_count, left_out_count;
+	struct stats_row timeline[STATS_TIMELINE];
+	uint64_t timeline_count; /* ever; the newest are kept */
+};
+
+/* The engine's report about one real frame. */
+void stats_add_report(struct stats *stats, const struct engine_report *report);
+void stats_add_row(struct stats *stats, const struct stats_row *row);
+
+/* A JSON object with the figures by their names; the caller owns it. NULL: out of memory. */
+json_t *stats_json(const struct stats *stats);
+/* {"first", "rows": [[vblank, target, ready, flip, frame_id, show, phase], ...]}: at most count rows from row `from`. */
+json_t *stats_timeline_json(const struct stats *stats, uint64_t from, uint64_t count);
+
+#endif
