@@ -85,12 +85,12 @@ static void build(struct scene *scene, struct mesh *mesh)
 		mesh->brush.glow = 0;
 		mesh_material(mesh, LAYER_GRID, 3.0);
 		mesh_tint(mesh, 0x8890b8);
-		mesh_box(mesh, vec3(5.2 * s - 0.7, 0, -0.7), vec3(5.2 * s + 0.7, 3.4, 0.7), MESH_ALL & ~MESH_BOTTOM);
-		mesh_box(mesh, vec3(11.0 * s - 1.6, 0, -2.6), vec3(11.0 * s + 1.6, 6.5, 0.2), MESH_ALL & ~MESH_BOTTOM);
+		mesh_box(mesh, vec3(8.6 * s - 0.7, 0, -0.7), vec3(8.6 * s + 0.7, 3.4, 0.7), MESH_ALL & ~MESH_BOTTOM);
+		mesh_box(mesh, vec3(14.0 * s - 1.8, 0, -2.6), vec3(14.0 * s + 1.8, 7.5, 0.4), MESH_ALL & ~MESH_BOTTOM);
 		mesh_material(mesh, LAYER_PLAIN, 1.0);
 		mesh->brush.glow = 30;
 		mesh_tint(mesh, s < 0 ? 0x50d8f0 : 0xf07850);
-		mesh_box(mesh, vec3(5.2 * s - 0.8, 3.4, -0.8), vec3(5.2 * s + 0.8, 3.65, 0.8), MESH_ALL);
+		mesh_box(mesh, vec3(8.6 * s - 0.8, 3.4, -0.8), vec3(8.6 * s + 0.8, 3.65, 0.8), MESH_ALL);
 		mesh->brush.glow = 0;
 	}
 	stage_end(scene, mesh, RANGE_PYLON);

@@ -125,6 +125,14 @@ void scene_destroy(struct scene **scene_pointer)
 	*scene_pointer = NULL;
 }
 
+/* Beyond this a double has no fractions of a second left; the scenes stand still there. */
+static const double last_time = 1e12;
+
+static double usable(double time)
+{
+	return fmax(-last_time, fmin(last_time, time));
+}
+
 static void pose(const struct scene *scene, double time, struct stage_pose *out)
 {
 	/* Whole, so that equal moments are equal bits. */
@@ -169,19 +177,20 @@ bool scene_render(struct scene *scene, const struct scene_request *request, stru
 		return false;
 	if (request->forward && !stage_create_forward(scene))
 		return false;
-	scene->plan = (struct stage_plan){.time = request->time};
-	scene->kind->plan(scene, request->time, &scene->plan);
-	pose(scene, request->time, &scene->now);
-	pose(scene, request->time_previous, &scene->other);
+	double time = usable(request->time);
+	scene->plan = (struct stage_plan){.time = time};
+	scene->kind->plan(scene, time, &scene->plan);
+	pose(scene, time, &scene->now);
+	pose(scene, usable(request->time_previous), &scene->other);
 	if (camera)
 		fill_camera(scene, camera);
 	scene->gl.BindFramebuffer(GL_FRAMEBUFFER, scene->frame);
 	stage_draw_plan(scene, 1.0);
 	scene->has_forward = request->forward;
 	if (request->forward)
-		render_forward(scene, request->time_next);
+		render_forward(scene, usable(request->time_next));
 	if (scene->kind->overlay)
-		render_overlay(scene, request->time);
+		render_overlay(scene, time);
 	if (textures)
 		*textures = (struct scene_textures){.color = scene->targets[0],
 		                                    .depth = scene->targets[1],
@@ -195,7 +204,7 @@ bool scene_render(struct scene *scene, const struct scene_request *request, stru
 void scene_key(struct scene *scene, double time, int key)
 {
 	if (scene->kind->key && isfinite(time))
-		scene->kind->key(scene, time, key);
+		scene->kind->key(scene, usable(time), key);
 }
 
 bool scene_get_score(const struct scene *scene, double time, struct scene_score *score)
@@ -203,6 +212,6 @@ bool scene_get_score(const struct scene *scene, double time, struct scene_score 
 	if (!scene->kind->score || !isfinite(time))
 		return false;
 	*score = (struct scene_score){0};
-	scene->kind->score(scene, time, score);
+	scene->kind->score(scene, usable(time), score);
 	return true;
 }
