@@ -37,7 +37,7 @@ static void test_back_within_100_ms(void)
 	const uint64_t intervals[] = {33333333, 16666667, 8333333, 25000000, 1000000};
 
 	for (size_t i = 0; i < sizeof(intervals) / sizeof(*intervals); i++) {
-		for (uint64_t away = 0; away < 40; away++) {
+		for (uint64_t away = 0; away < 40; away += 3) {
 			struct fake_daemon daemon;
 			begin();
 			/* Away for up to half an hour, in steps that shift the daemon's return against the game's frames. */

@@ -1,0 +1,199 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * A renderer with OpenGL 3.3 in a GLFW window: the textures that it renders to
+ * are read back by the shim and shown in its own window too.
+ *
+ * usage: example-glfw [--seconds S]
+ */
+
+#define GL_GLEXT_PROTOTYPES
+#include <GL/glcorearb.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <math.h>
+#include <pursuit.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define WIDTH 640
+#define HEIGHT 360
+#define VERSION "#version 330 core\n"
+
+static const char vertex_source[] =
+	VERSION "void main() {\n"
+			"	vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+			"	gl_Position = vec4(corner, 0.0, 1.0);\n"
+			"}\n";
+
+/* A disc that circles over stripes, and how far each pixel has come since the frame before. */
+static const char fragment_source[] = VERSION "uniform vec2 center, before;\n"
+											  "layout(location = 0) out vec4 color;\n"
+											  "layout(location = 1) out vec4 motion;\n"
+											  "void main() {\n"
+											  "	vec2 at = gl_FragCoord.xy - center;\n"
+											  "	bool disc = length(at) < 80.0;\n"
+											  "	vec2 wave = disc ? sin(at * 0.3) : sin(gl_FragCoord.yy * 0.1);\n"
+											  "	color = vec4(0.5 + 0.4 * wave, disc ? 0.8 : 0.2, 1.0);\n"
+											  "	motion = vec4(disc ? center - before : vec2(0.0), 0.0, 0.0);\n"
+											  "	gl_FragDepth = disc ? 0.3 : 0.9;\n"
+											  "}\n";
+
+static GLuint compile(GLenum type, const char *source)
+{
+	GLuint shader = glCreateShader(type);
+	GLint good = 0;
+	char log[512];
+
+	glShaderSource(shader, 1, &source, NULL);
+	glCompileShader(shader);
+	glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+	if (!good) {
+		glGetShaderInfoLog(shader, sizeof(log), NULL, log);
+		fprintf(stderr, "%s\n", log);
+		exit(1);
+	}
+	return shader;
+}
+
+static GLuint make_program(void)
+{
+	GLuint program = glCreateProgram();
+
+	glAttachShader(program, compile(GL_VERTEX_SHADER, vertex_source));
+	glAttachShader(program, compile(GL_FRAGMENT_SHADER, fragment_source));
+	glLinkProgram(program);
+	glUseProgram(program);
+	return program;
+}
+
+static GLuint make_texture(GLenum internal, GLenum format, GLenum type, GLenum attachment)
+{
+	GLuint texture = 0;
+
+	glGenTextures(1, &texture);
+	glBindTexture(GL_TEXTURE_2D, texture);
+	glTexImage2D(GL_TEXTURE_2D, 0, (GLint)internal, WIDTH, HEIGHT, 0, format, type, NULL);
+	glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+	glFramebufferTexture2D(GL_FRAMEBUFFER, attachment, GL_TEXTURE_2D, texture, 0);
+	return texture;
+}
+
+static void *lookup(const char *name)
+{
+	return (void *)glfwGetProcAddress(name);
+}
+
+static GLFWwindow *make_window(void)
+{
+	if (!glfwInit()) {
+		return NULL;
+	}
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+	return glfwCreateWindow(WIDTH, HEIGHT, "example-glfw", NULL, NULL);
+}
+
+/* Colour, motion and a depth texture in one framebuffer. In GL the first row is the lowest, and y points up. */
+static struct pursuit_gl_textures make_targets(GLuint *framebuffer)
+{
+	const GLenum targets[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+
+	glGenFramebuffers(1, framebuffer);
+	glBindFramebuffer(GL_FRAMEBUFFER, *framebuffer);
+	struct pursuit_gl_textures textures = {
+		.color = make_texture(GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, targets[0]),
+		.motion = make_texture(GL_RG16F, GL_RG, GL_HALF_FLOAT, targets[1]),
+		.depth = make_texture(GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, GL_DEPTH_ATTACHMENT),
+		.bottom_up = 1,
+		.motion_y_up = 1,
+	};
+	glDrawBuffers(2, targets);
+	glEnable(GL_DEPTH_TEST);
+	glDepthFunc(GL_ALWAYS);
+	glViewport(0, 0, WIDTH, HEIGHT);
+	return textures;
+}
+
+/* Draws the scene of second `at`; the motion is since second `past`. */
+static void draw(GLuint program, double at, double past)
+{
+	glUniform2f(glGetUniformLocation(program, "center"), (float)(320 + 150 * cos(at * 2)),
+				(float)(180 + 80 * sin(at * 2)));
+	glUniform2f(glGetUniformLocation(program, "before"), (float)(320 + 150 * cos(past * 2)),
+				(float)(180 + 80 * sin(past * 2)));
+	glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+static void show(GLFWwindow *window, GLuint framebuffer)
+{
+	glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+	glBlitFramebuffer(0, 0, WIDTH, HEIGHT, 0, 0, WIDTH, HEIGHT, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+	glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+	glfwSwapBuffers(window);
+	glfwPollEvents();
+}
+
+static uint64_t now_ns(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
+}
+
+int main(int count, char **arguments)
+{
+	double seconds = count == 3 && strcmp(arguments[1], "--seconds") == 0 ? atof(arguments[2]) : 5.0;
+	GLFWwindow *window = make_window();
+	GLuint framebuffer, vertices;
+
+	if (!window) {
+		fprintf(stderr, "no window with OpenGL 3.3\n");
+		return 77;
+	}
+	glfwMakeContextCurrent(window);
+	glfwSwapInterval(1);
+	glGenVertexArrays(1, &vertices);
+	glBindVertexArray(vertices);
+	GLuint program = make_program();
+	struct pursuit_gl_textures textures = make_targets(&framebuffer);
+	struct pursuit_stream_params params = {
+		.width = WIDTH,
+		.height = HEIGHT,
+		.color_format = PURSUIT_COLOR_RGBA8,
+		.depth_format = PURSUIT_DEPTH_FLOAT32,
+		.motion_format = PURSUIT_MOTION_FLOAT16,
+		.name = "example-glfw",
+	};
+	struct pursuit_stream *stream = pursuit_open(&params);
+	struct pursuit_gl *gl = pursuit_gl_create(stream, lookup);
+
+	if (!gl) {
+		perror("pursuit");
+		return 1;
+	}
+	uint64_t begin = now_ns(), last = begin;
+	while (!glfwWindowShouldClose(window) && (double)(last - begin) < seconds * 1e9) {
+		struct pursuit_frame frame = {.time_ns = now_ns()};
+		draw(program, (double)(frame.time_ns - begin) * 1e-9, (double)(last - begin) * 1e-9);
+		last = frame.time_ns;
+		pursuit_gl_submit(gl, &textures, &frame);
+		show(window, framebuffer);
+		/* The swap waited for the display; by now the read-back is done, and the frame leaves at once. */
+		pursuit_gl_update(gl);
+	}
+	pursuit_gl_flush(gl);
+
+	struct pursuit_status status;
+	pursuit_get_status(stream, &status);
+	printf("%llu frames submitted, %llu published; %s\n", (unsigned long long)status.submitted,
+		   (unsigned long long)status.published, status.message);
+	pursuit_gl_destroy(&gl);
+	pursuit_close(&stream);
+	glfwTerminate();
+	return 0;
+}
