@@ -30,23 +30,12 @@ static void test_half(void)
 		float value;
 		uint16_t half;
 	} known[] = {
-		{0.0f, 0x0000},
-		{-0.0f, 0x8000},
-		{1.0f, 0x3c00},
-		{-2.0f, 0xc000},
-		{65504.0f, 0x7bff},
-		{65519.99f, 0x7bff},
-		{65520.0f, 0x7c00},
-		{INFINITY, 0x7c00},
-		{-INFINITY, 0xfc00},
-		{0x1p-24f, 0x0001},
-		{0x1p-25f, 0x0000},
-		{0x1.8p-25f, 0x0001},
-		{0x1p-14f, 0x0400},
-		{0x1.ff8p-15f, 0x03ff},
-		{0x1.8p-24f, 0x0002},
-		{1.0f + 0x1p-11f, 0x3c00},
-		{1.0f + 0x1.8p-10f, 0x3c02},
+		{0.0f, 0x0000},         {-0.0f, 0x8000},           {1.0f, 0x3c00},
+		{-2.0f, 0xc000},        {65504.0f, 0x7bff},        {65519.99f, 0x7bff},
+		{65520.0f, 0x7c00},     {INFINITY, 0x7c00},        {-INFINITY, 0xfc00},
+		{0x1p-24f, 0x0001},     {0x1p-25f, 0x0000},        {0x1.8p-25f, 0x0001},
+		{0x1p-14f, 0x0400},     {0x1.ff8p-15f, 0x03ff},    {0x1.8p-24f, 0x0002},
+		{0x1.4p-23f, 0x0002},   {1.0f + 0x1p-11f, 0x3c00}, {1.0f + 0x1.8p-10f, 0x3c02},
 		{0x1.fffp-15f, 0x0400},
 	};
 	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
@@ -413,7 +402,8 @@ static void test_damaged_files(void)
 		for (int i = 0; i < 2000; i++) {
 			const size_t at = i < 600 ? (size_t)i % size : random_next() % size;
 			const uint8_t before = whole[at];
-			whole[at] = i % 3 ? (uint8_t)(before ^ (1u << random_next() % 8)) : (uint8_t)random_next();
+			const uint32_t noise = random_next();
+			whole[at] = (uint8_t)(i % 3 ? before ^ (1u << noise % 8) : noise);
 			sample_write_file(sample_path("damaged"), whole, size);
 			read_damaged(sample_path("damaged"), false);
 			whole[at] = before;

@@ -397,17 +397,19 @@ static void test_missing_and_foreign_chunks(void)
 	CHECK_INT(recording_reader_summary(reader)->damaged_chunks, 0);
 	recording_reader_destroy(&reader);
 
-	/* 640 bytes of rubbish between two chunks. */
-	memcpy(edited, data, offsets[3]);
-	memset(edited + offsets[3], 0x55, 640);
-	memcpy(edited + offsets[3] + 640, data + offsets[3], size - offsets[3]);
-	sample_write_file(sample_path("rubbish.pursuit"), edited, size + 640);
-	reader = open_reader(sample_path("rubbish.pursuit"), 0, &error);
-	CHECK_INT(play(reader, true), FRAMES - 1);
-	CHECK_INT(recording_reader_summary(reader)->damaged_chunks, 1);
-	CHECK_INT(recording_reader_summary(reader)->first_damage_offset, offsets[3]);
-	CHECK(recording_reader_summary(reader)->closed);
-	recording_reader_destroy(&reader);
+	/* Rubbish between two chunks, down to the smallest that keeps the boundary. */
+	for (size_t rubbish = 8; rubbish <= 640; rubbish *= 2) {
+		memcpy(edited, data, offsets[3]);
+		memset(edited + offsets[3], 0x55, rubbish);
+		memcpy(edited + offsets[3] + rubbish, data + offsets[3], size - offsets[3]);
+		sample_write_file(sample_path("rubbish.pursuit"), edited, size + rubbish);
+		reader = open_reader(sample_path("rubbish.pursuit"), 0, &error);
+		CHECK_INT(play(reader, true), FRAMES - 1);
+		CHECK_INT(recording_reader_summary(reader)->damaged_chunks, 1);
+		CHECK_INT(recording_reader_summary(reader)->first_damage_offset, offsets[3]);
+		CHECK(recording_reader_summary(reader)->closed);
+		recording_reader_destroy(&reader);
+	}
 	free(edited);
 	free(data);
 }
