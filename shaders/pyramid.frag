@@ -19,5 +19,7 @@ void main()
 	ivec3 x = clamp(ivec3(-1, 0, 1) + centre.x, 0, last.x);
 	ivec3 y = clamp(ivec3(-1, 0, 1) + centre.y, 0, last.y);
 	vec3 sum = row(x, y.x) + 2.0 * row(x, y.y) + row(x, y.z);
-	o_color = vec4(sum / 16.0, 1.0);
+	/* One sum in sixteen lies halfway between two code values: rounded here, upwards, whatever the renderer would do. */
+	vec3 whole = floor(sum * 255.0 + 0.5);
+	o_color = vec4(floor(whole / 16.0 + 0.5) / 255.0, 1.0);
 }

@@ -29,7 +29,7 @@ void main()
 	vec2 dy = dFdy(v_source);
 	float area = max(abs(dx.x * dy.y - dx.y * dy.x), 1e-12);
 	float tear = smoothstep(TEAR_FROM, TEAR_FULL, larger_singular_value(dx, dy) / area - 1.0);
-	vec3 low = low_frequency(u_level, v_source - 0.5, u_level_scale);
+	vec3 low = low_frequency_between(u_level, v_source - 0.5, u_level_scale, u_size);
 	color = mix(color, low, tear);
 #endif
 	o_color = vec4(color, 1.0);

@@ -8,8 +8,9 @@
 
 double convert_to_light(double code, enum engine_curve curve, double gamma)
 {
+	/* A power of something negative has no meaning: no light. */
 	if (curve == ENGINE_CURVE_GAMMA)
-		return pow(code, gamma);
+		return code <= 0.0 ? 0.0 : pow(code, gamma);
 	return code <= 0.04045 ? code / 12.92 : pow((code + 0.055) / 1.055, 2.4);
 }
 
@@ -32,13 +33,20 @@ static double half_to_double(uint32_t half)
 	return half & 0x8000u ? -value : value;
 }
 
-/* The number that a component of the plane stands for; not negative, NaN becomes 0. */
+/* The number that a component of the plane stands for. */
 static double decode_component(uint32_t format, uint32_t bits)
 {
-	double value = format == PURSUIT_FORMAT_RGBA16F  ? half_to_double(bits) :
-	               format == PURSUIT_FORMAT_RGB10A2 ? bits / 1023.0 :
-	                                                  bits / 255.0;
-	return value > 0.0 ? value : 0.0;
+	if (format == PURSUIT_FORMAT_RGBA16F)
+		return half_to_double(bits);
+	return format == PURSUIT_FORMAT_RGB10A2 ? bits / 1023.0 : bits / 255.0;
+}
+
+/* To [0, 1], NaN to 0. */
+static double saturate(double value)
+{
+	if (!(value > 0.0))
+		return 0.0;
+	return value < 1.0 ? value : 1.0;
 }
 
 static double decode_light(const struct pursuit_transfer *transfer, double code)
@@ -55,7 +63,7 @@ static double decode_light(const struct pursuit_transfer *transfer, double code)
 
 static uint8_t code8(double value)
 {
-	return (uint8_t)floor(255.0 * (value < 1.0 ? value : 1.0) + 0.5);
+	return (uint8_t)floor(255.0 * saturate(value) + 0.5);
 }
 
 static uint8_t convert_component(const struct convert *convert, uint32_t bits)
@@ -69,8 +77,7 @@ static uint8_t convert_component(const struct convert *convert, uint32_t bits)
 		peak = 1.0;
 	}
 	double light = (decode_light(&convert->transfer, code) - black) / (peak - black);
-	light = light > 0.0 ? light < 1.0 ? light : 1.0 : 0.0;
-	return code8(convert_from_light(light, convert->curve, (double)convert->gamma));
+	return code8(convert_from_light(saturate(light), convert->curve, (double)convert->gamma));
 }
 
 /* Whether the plane's transfer is the display's own. */

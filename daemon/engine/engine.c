@@ -84,7 +84,7 @@ static void delete_objects(struct engine *engine)
 	gl->DeleteFramebuffers(1, &engine->depth_framebuffer);
 	gl->DeleteRenderbuffers(1, &engine->depth);
 	gl->DeleteVertexArrays(1, &engine->no_attributes);
-	mesh_finish(&engine->mesh, gl);
+	warp_mesh_finish(&engine->mesh, gl);
 	program_cache_finish(&engine->programs, gl);
 	timer_finish(&engine->timer, gl);
 }
@@ -132,7 +132,7 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 	timer_drop(&engine->timer);
 	report_begin(&engine->report, frame->header.frame_id, timer_source(&engine->timer));
 	engine->job = (struct job){ .frame = frame };
-	engine->begun = engine->moves = engine->compensated = engine->tears = false;
+	engine->begun = engine->moves = engine->compensated = engine->tears = engine->has_levels = false;
 	engine->n = params->n < 1 ? 1 : params->n > 8 ? 8 : params->n;
 	engine->real_interval_ns = params->real_interval_ns;
 	engine->last_phase = params->last_phase >= 0.0 ? fmin(params->last_phase, 8.0) : (engine->n - 1.0) / engine->n;

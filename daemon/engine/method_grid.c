@@ -53,16 +53,24 @@ static int make_layers(struct engine *engine, struct error *error)
 {
 	const char *reason = why_no_blur(engine);
 	engine->compensated = !reason;
-	engine->tears = engine->params.blur != ENGINE_BLUR_OFF && (engine->mesh.torn_count || engine->last_phase <= 0.0);
+	engine->tears = engine->params.blur != ENGINE_BLUR_OFF && engine->mesh.torn_count;
 	if (reason)
 		report_leave_out(&engine->report, "blur", reason);
 	if (reason || engine->params.no_compensation)
 		report_leave_out(&engine->report, "boost", reason ? reason : "off");
 	int result = 0;
-	if (engine->compensated || engine->tears)
+	engine->has_levels = engine->compensated || engine->tears;
+	if (engine->has_levels)
 		result = pass_run(engine, PASS_PYRAMID, error);
 	if (result == 0 && engine->compensated)
 		result = pass_run(engine, PASS_COMPENSATE, error);
+	return result;
+}
+
+static int upload_mesh(struct engine *engine, bool ordered, struct error *error)
+{
+	int result = warp_mesh_upload(&engine->mesh, engine_gl(engine), &engine->plan, ordered, error);
+	engine->report.bytes_up += engine->mesh.bytes;
 	return result;
 }
 
@@ -79,10 +87,21 @@ int grid_begin(struct engine *engine, struct error *error)
 	note_plan(engine);
 	engine->boost = 1.0 - smoothstep(BLOCH_FROM, BLOCH_GONE, engine->plan.real_interval_s);
 	/* Where depths are all equal, a fold is settled by drawing order. */
-	bool ordered = engine->plan.folded && !engine->has_depth;
-	result = mesh_upload(&engine->mesh, engine_gl(engine), &engine->plan, ordered, error);
-	engine->report.bytes_up += engine->mesh.bytes;
+	result = upload_mesh(engine, engine->plan.folded && !engine->has_depth, error);
 	return result < 0 ? result : make_layers(engine, error);
+}
+
+/* The lists hold from phase 0 to the last one, where stretch is convex in the phase; elsewhere all is looked at anew. */
+static int leave_range(struct engine *engine, double phase, struct error *error)
+{
+	int result = engine->mesh.ordered ? 0 : upload_mesh(engine, true, error);
+	if (result < 0 || engine->tears || engine->params.blur == ENGINE_BLUR_OFF)
+		return result;
+	engine->tears = warp_mesh_tears(&engine->plan, (float)phase);
+	if (!engine->tears || engine->has_levels)
+		return 0;
+	engine->has_levels = true;
+	return pass_run(engine, PASS_PYRAMID, error);
 }
 
 int grid_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
@@ -96,9 +115,12 @@ int grid_show(struct engine *engine, enum engine_show show, double phase, const 
 		*picture = real ? &engine->real : &engine->between;
 	if (real && fabs(phase) <= SAME_MOMENT)
 		return 0;
+	int result = phase >= 0.0 && phase <= engine->last_phase ? 0 : leave_range(engine, phase, error);
+	if (result < 0)
+		return result;
 	engine->job.picture = *picture;
 	engine->job.phase = phase;
-	int result = pass_run(engine, PASS_WARP, error);
+	result = pass_run(engine, PASS_WARP, error);
 	*picture = &engine->shown;
 	return result;
 }

@@ -37,9 +37,9 @@ int params_resolve(struct engine_params *params, struct error *error)
 	if (result == 0)
 		result = check_count("threshold_quarter", &params->threshold_quarter, 2, 1, 63, error);
 	if (result == 0)
-		result = check_number("display_width_mm", &params->display_width_mm, 531.0f, 1.0f, 1e6f, error);
+		result = check_number("display_width_mm", &params->display_width_mm, 531.0f, 1e-3f, 1e6f, error);
 	if (result == 0)
-		result = check_number("viewing_distance_mm", &params->viewing_distance_mm, 600.0f, 1.0f, 1e6f, error);
+		result = check_number("viewing_distance_mm", &params->viewing_distance_mm, 600.0f, 1e-3f, 1e6f, error);
 	if (result == 0)
 		result = check_choice("blur", (unsigned)params->blur, ENGINE_BLUR_OFF, error);
 	if (result == 0)

@@ -78,7 +78,7 @@ static int run(struct engine *engine, struct error *error)
 		gl->BindVertexArray(engine->no_attributes);
 		gl->DrawArrays(GL_TRIANGLES, 0, 6);
 	} else {
-		mesh_draw_doubtful(&engine->mesh, gl);
+		warp_mesh_draw_doubtful(&engine->mesh, gl);
 	}
 	return 0;
 }

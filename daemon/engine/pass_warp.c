@@ -68,33 +68,21 @@ static bool use(struct engine *engine, unsigned variant, struct error *error)
 	return true;
 }
 
+/* Torn triangles are few and cost more, so they have a list and a program of their own, unless order matters. */
 static int draw(struct engine *engine, struct error *error)
 {
 	const struct gl *gl = engine_gl(engine);
-	double phase = engine->job.phase;
-	/* Between 0 and last_phase stretch is convex in the phase: the sorted lists hold there. */
-	bool sorted = !engine->mesh.ordered && phase >= 0.0 && phase <= engine->last_phase;
-	if (engine->tears && !sorted) {
-		if (!use(engine, VARIANT_TEAR, error))
-			return -EIO;
-		if (engine->mesh.ordered) {
-			mesh_draw_ordered(&engine->mesh, gl);
-			return 0;
-		}
-		mesh_draw_whole(&engine->mesh, gl);
-		mesh_draw_torn(&engine->mesh, gl);
+	bool ordered = engine->mesh.ordered;
+	if (!use(engine, ordered && engine->tears ? VARIANT_TEAR : 0, error))
+		return -EIO;
+	if (ordered) {
+		warp_mesh_draw_ordered(&engine->mesh, gl);
 		return 0;
 	}
-	if (!use(engine, 0, error))
+	warp_mesh_draw_whole(&engine->mesh, gl);
+	if (engine->tears && !use(engine, VARIANT_TEAR, error))
 		return -EIO;
-	if (engine->mesh.ordered) {
-		mesh_draw_ordered(&engine->mesh, gl);
-		return 0;
-	}
-	mesh_draw_whole(&engine->mesh, gl);
-	if (engine->tears && engine->mesh.torn_count && !use(engine, VARIANT_TEAR, error))
-		return -EIO;
-	mesh_draw_torn(&engine->mesh, gl);
+	warp_mesh_draw_torn(&engine->mesh, gl);
 	return 0;
 }
 

@@ -8,11 +8,11 @@
 #include "daemon/engine/context.h"
 #include "daemon/engine/convert.h"
 #include "daemon/engine/engine.h"
-#include "daemon/engine/mesh.h"
 #include "daemon/engine/plan.h"
 #include "daemon/engine/program.h"
 #include "daemon/engine/target.h"
 #include "daemon/engine/timer.h"
+#include "daemon/engine/warp_mesh.h"
 
 #define MAX_LEVELS 6
 
@@ -57,7 +57,7 @@ struct engine {
 	size_t staging_bytes;
 
 	struct plan plan;
-	struct mesh mesh;
+	struct warp_mesh mesh;
 	struct target color;              /* the original */
 	struct target real, between;      /* E and B, valid if `compensated` */
 	struct target levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
@@ -78,6 +78,7 @@ struct engine {
 	bool has_depth;   /* a depth plane tells near from far */
 	bool compensated; /* E and B differ from the original */
 	bool tears;       /* some triangle may tear */
+	bool has_levels;  /* the pyramid is made */
 	double boost;     /* k */
 };
 
