@@ -85,6 +85,7 @@ __attribute__((format(printf, 5, 6))) static void leave(struct shim_attach *atta
 	shim_attach_finish(attach);
 	attach->state = state;
 	attach->greeted = false;
+	attach->complained = false;
 	attach->next_try_ns = now_ns + delay;
 	va_start(arguments, format);
 	vsnprintf(attach->message, sizeof(attach->message), format, arguments);
@@ -257,9 +258,23 @@ static const char *on_refused(struct shim_attach *attach, struct shim_packet *pa
 	} else if (refused->fatal || !attached) {
 		leave(attach, PURSUIT_STATE_REFUSED, now_ns, REFUSED_DELAY, "%s", refused->text);
 	} else {
+		attach->complained = true;
 		snprintf(attach->message, sizeof(attach->message), "%s", refused->text);
 	}
 	return NULL;
+}
+
+/* A stream that is closed after a complaint was refused; the complaint is why. */
+static void on_stream_closed(struct shim_attach *attach, uint64_t now_ns)
+{
+	char why[SHIM_MESSAGE_BYTES];
+
+	memcpy(why, attach->message, sizeof(why));
+	if (attach->complained) {
+		leave(attach, PURSUIT_STATE_REFUSED, now_ns, REFUSED_DELAY, "%s", why);
+	} else {
+		leave(attach, PURSUIT_STATE_DETACHED, now_ns, BROKEN_DELAY, "the daemon closed the stream");
+	}
 }
 
 static const char *on_packet(struct shim_attach *attach, struct shim_packet *packet, uint64_t now_ns,
@@ -277,7 +292,7 @@ static const char *on_packet(struct shim_attach *attach, struct shim_packet *pac
 	case PURSUIT_MESSAGE_REFUSED:
 		return on_refused(attach, packet, now_ns);
 	case PURSUIT_MESSAGE_STREAM_CLOSED:
-		leave(attach, PURSUIT_STATE_DETACHED, now_ns, FIRST_DELAY, "the daemon closed the stream");
+		on_stream_closed(attach, now_ns);
 		return NULL;
 	default:
 		return "a packet of unknown type";

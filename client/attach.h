@@ -11,7 +11,7 @@
  *       | +--- gone, silent for 5 s, nonsense +   | REFUSED              |
  *       |                                         v                      |
  *       +---------- 2 s later ------------- REFUSED                      |
- *       +------------- hang-up, STREAM_CLOSED, REFUSED and closed -------+
+ *       +------------------ hang-up, STREAM_CLOSED ----------------------+
  *
  * OPEN_STREAM follows HELLO without waiting for WELCOME: this client speaks one
  * version, so the answer could not change what it sends, and one frame of a
@@ -37,6 +37,7 @@ struct shim_attach {
 	int socket;                 /* -1: none */
 	int wake;                   /* the daemon's eventfd, only when attached; -1: none */
 	bool greeted;               /* WELCOME has come */
+	bool complained;            /* a REFUSED has come that did not end the connection */
 	struct shim_slots *offered; /* sent with OPEN_STREAM, not yet accepted */
 	uint64_t next_try_ns;
 	uint64_t give_up_ns; /* while attaching */

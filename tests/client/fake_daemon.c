@@ -317,6 +317,24 @@ void fake_report(struct fake_daemon *daemon, uint64_t frame_id, uint32_t state)
 	__atomic_store_n(&daemon->control->feedback_count, number + 1, __ATOMIC_RELEASE);
 }
 
+void fake_close_stream(struct fake_daemon *daemon, const char *why)
+{
+	struct pursuit_message_close_stream closed = {
+		.header = {.type = PURSUIT_MESSAGE_STREAM_CLOSED, .size = sizeof(closed)},
+		.stream_id = 1,
+	};
+
+	if (why) {
+		send_refused(daemon, PURSUIT_REFUSED_FRAME, 0, why);
+	}
+	send_packet(daemon, &closed, sizeof(closed), NULL, 0);
+}
+
+void fake_say_shutdown(struct fake_daemon *daemon)
+{
+	send_refused(daemon, PURSUIT_REFUSED_SHUTDOWN, 1, "the daemon is stopping");
+}
+
 uint64_t fake_wakes(struct fake_daemon *daemon)
 {
 	uint64_t value = 0;

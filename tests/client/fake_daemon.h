@@ -75,6 +75,12 @@ const struct pursuit_frame_header *fake_take(struct fake_daemon *daemon, const u
 /* Writes the next report into the ring. */
 void fake_report(struct fake_daemon *daemon, uint64_t frame_id, uint32_t state);
 
+/* Ends the stream: STREAM_CLOSED, after a REFUSED that says `why` unless that is NULL. */
+void fake_close_stream(struct fake_daemon *daemon, const char *why);
+
+/* Says that it is stopping. */
+void fake_say_shutdown(struct fake_daemon *daemon);
+
 /* The value of the eventfd, which is reset to 0. */
 uint64_t fake_wakes(struct fake_daemon *daemon);
 

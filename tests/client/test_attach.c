@@ -222,6 +222,36 @@ static void test_feedback(void)
 	fake_stop(&daemon, true);
 }
 
+/* An attached stream that the daemon ends: with a reason, without one, and because it stops. */
+static void test_ended(void)
+{
+	const enum pursuit_state states[] = {PURSUIT_STATE_REFUSED, PURSUIT_STATE_DETACHED, PURSUIT_STATE_DETACHED};
+	const char *const messages[] = {"near_distance is -1", "the daemon closed the stream", "the daemon is stopping"};
+
+	for (int i = 0; i < 3; i++) {
+		struct fake_daemon daemon;
+		CHECK(fake_start(&daemon, harness.path, FAKE_GOOD));
+		struct pursuit_stream *stream = open_stream(4);
+		CHECK(attach(stream, &daemon));
+		send_frame(stream, 1);
+		if (i < 2) {
+			fake_close_stream(&daemon, i == 0 ? messages[0] : NULL);
+		} else {
+			fake_say_shutdown(&daemon);
+		}
+		pursuit_update(stream);
+		CHECK_INT(status_of(stream).state, states[i]);
+		CHECK_STRING(status_of(stream).message, messages[i]);
+		/* Only a daemon that stops is soon asked again. */
+		sleep_ms(10);
+		pursuit_update(stream);
+		CHECK_INT(status_of(stream).state == PURSUIT_STATE_ATTACHING, i == 2);
+		CHECK(send_frame(stream, 1) > 0);
+		CHECK(close_stream(&stream));
+		fake_stop(&daemon, true);
+	}
+}
+
 /* A frame that was acquired from a daemon that is gone is memory until it is given back. */
 static void test_frame_outlives_daemon(void)
 {
@@ -352,6 +382,7 @@ int main(void)
 	RUN(test_newest_wins);
 	RUN(test_header);
 	RUN(test_feedback);
+	RUN(test_ended);
 	RUN(test_frame_outlives_daemon);
 	RUN(test_closed_with_frames_out);
 	RUN(test_killed_and_back);
