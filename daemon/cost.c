@@ -20,6 +20,11 @@ void cost_add(struct cost *cost, uint64_t run_ns)
 	memcpy(sorted, cost->runs_ns, count * sizeof(sorted[0]));
 	qsort(sorted, count, sizeof(sorted[0]), compare);
 	cost->usual_ns = sorted[count / 2];
-	/* A scheduler's whim costs a tenth and half a millisecond more. */
-	cost->safe_ns = sorted[count * 9 / 10] * 11 / 10 + 500000;
+	/*
+	 * A scheduler's whim costs a tenth and half a millisecond more. But where times are all over the place, being
+	 * safe would cost more delay than it is worth.
+	 */
+	const uint64_t safe_ns = sorted[count * 9 / 10] * 11 / 10 + 500000;
+	const uint64_t most_ns = cost->usual_ns * 3 / 2 + 1000000;
+	cost->safe_ns = safe_ns < most_ns ? safe_ns : most_ns;
 }

@@ -16,7 +16,7 @@ struct cost {
 	uint64_t runs_ns[COST_WINDOW];
 	uint64_t count;
 	uint64_t usual_ns; /* median */
-	uint64_t safe_ns;  /* what nine of ten runs stay below, and a margin */
+	uint64_t safe_ns;  /* what nine of ten runs stay below, and a margin; at most 1.5 times the usual and 1 ms */
 };
 
 void cost_add(struct cost *cost, uint64_t run_ns);

@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "daemon/render.h"
@@ -11,6 +12,74 @@
 #define ENGINE_LAST_DELAY (5000 * MS)
 
 /* ---- the engine ---- */
+
+#define WARM_SIZE 64
+
+/* A frame with an edge in depth and motion, so that every pass runs. */
+static void make_warm_frame(struct frame *frame, uint32_t *color, float *depth, uint16_t *motion)
+{
+	struct pursuit_frame_header *header = &frame->header;
+	memset(frame, 0, sizeof(*frame));
+	header->frame_id = 1;
+	header->plane_count = 3;
+	header->motion_kind = PURSUIT_MOTION_BACKWARD;
+	header->depth_kind = PURSUIT_DEPTH_DEVICE;
+	header->real_interval_ns = header->motion_interval_ns = 16 * MS;
+	header->planes[0] = (struct pursuit_plane){.role = PURSUIT_ROLE_COLOR, .format = PURSUIT_FORMAT_BGRA8};
+	header->planes[0].transfer.curve = PURSUIT_CURVE_SRGB;
+	header->planes[1] = (struct pursuit_plane){.role = PURSUIT_ROLE_DEPTH, .format = PURSUIT_FORMAT_DEPTH32F};
+	header->planes[2] = (struct pursuit_plane){.role = PURSUIT_ROLE_MOTION, .format = PURSUIT_FORMAT_RG16F};
+	for (uint32_t i = 0; i < 3; i++)
+		header->planes[i].width = header->planes[i].height = WARM_SIZE;
+	frame_layout(header);
+	for (uint32_t i = 0; i < WARM_SIZE * WARM_SIZE; i++) {
+		const bool near = i % WARM_SIZE > 20 && i % WARM_SIZE < 45 && i / WARM_SIZE > 20 && i / WARM_SIZE < 45;
+		color[i] = near ? 0xff8040c0u : 0xff000000u + i * 7;
+		depth[i] = near ? 0.25f : 0.75f;
+		motion[2 * i] = near ? 0x4a00 : 0; /* 12 pixels, as a half */
+		motion[2 * i + 1] = 0;
+	}
+	frame->planes[0] = (const uint8_t *)color;
+	frame->planes[1] = (const uint8_t *)depth;
+	frame->planes[2] = (const uint8_t *)motion;
+}
+
+/* Software renderers compile a shader when it is first drawn with: rather now than in a client's first frames. */
+static void warm_up(struct render *render)
+{
+	static const struct engine_request requests[] = {
+		{ENGINE_SHOW_REAL, 0.0}, {ENGINE_SHOW_REAL, 0.25}, {ENGINE_SHOW_IN_BETWEEN, 0.5}, {ENGINE_SHOW_PLAIN, 0.0}};
+	const struct engine_begin_params params = {.n = 2, .last_phase = 0.5, .real_interval_ns = 16 * MS};
+	const size_t pixels = WARM_SIZE * WARM_SIZE;
+	uint8_t *memory = aligned_alloc(64, pixels * 16);
+	struct frame frame;
+	struct error error = {""};
+	if (!memory)
+		return;
+	make_warm_frame(&frame, (uint32_t *)(void *)memory, (float *)(void *)(memory + pixels * 4),
+					(uint16_t *)(void *)(memory + pixels * 8));
+	struct engine_image image = {memory + pixels * 12, (size_t)WARM_SIZE * 4};
+	int result = engine_begin(render->engine, &frame, &params, &error);
+	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]) && result == 0; i++)
+		result = engine_render(render->engine, &requests[i], &image, &error);
+	if (result < 0)
+		log_warning(render->log, "the first picture failed: %s", error.text);
+	free(memory);
+}
+
+int draw_make_engine(struct render *render, struct error *error)
+{
+	struct engine_params params;
+	const int result = settings_engine_params(render->settings, &params, error);
+	if (result < 0)
+		return result;
+	render->engine = engine_create(&params, error);
+	if (!render->engine)
+		return -EIO;
+	warm_up(render);
+	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
+	return 0;
+}
 
 static void lose_engine(struct render *render, const char *why)
 {
@@ -29,20 +98,16 @@ static void lose_engine(struct render *render, const char *why)
 
 bool draw_revive_engine(struct render *render, uint64_t now_ns)
 {
-	struct engine_params params;
 	struct error error;
 	if (render->engine)
 		return true;
 	if (now_ns < render->engine_retry_ns)
 		return false;
-	if (settings_engine_params(render->settings, &params, &error) == 0)
-		render->engine = engine_create(&params, &error);
-	if (!render->engine) {
+	if (draw_make_engine(render, &error) < 0) {
 		lose_engine(render, error.text);
 		return false;
 	}
 	log_info(render->log, "the engine is back");
-	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
 	return true;
 }
 

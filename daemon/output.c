@@ -9,12 +9,14 @@
 #include <string.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "daemon/render.h"
 
 #define FLIPS 64u
+#define RENDER_NICE (-10)
 
 struct output {
 	struct output_params params;
@@ -205,10 +207,22 @@ static int start(struct output *output)
 	return result;
 }
 
+/*
+ * A picture that is late is worth nothing, so this thread goes before ordinary
+ * ones, and so do those that a software renderer starts from it. Mostly not
+ * permitted (RLIMIT_NICE): no matter then.
+ */
+static void raise_priority(const struct output *output)
+{
+	if (setpriority(PRIO_PROCESS, (id_t)gettid(), RENDER_NICE) < 0)
+		log_debug(output->params.log, "rendering at ordinary priority (%s)", strerror(errno));
+}
+
 static void *run(void *data)
 {
 	struct output *output = data;
 	pthread_setname_np(pthread_self(), "pursuit-render");
+	raise_priority(output);
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	if (start(output) == 0) {
 		while (read_mailbox(output)) {

@@ -17,14 +17,9 @@
 
 int render_init(struct render *render, const struct presenter_params *presenter_params, struct error *error)
 {
-	struct engine_params params;
-	int result = settings_engine_params(render->settings, &params, error);
+	const int result = draw_make_engine(render, error);
 	if (result < 0)
 		return result;
-	render->engine = engine_create(&params, error);
-	if (!render->engine)
-		return -EIO;
-	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
 	render->presenter = presenter_create(render->settings->present, presenter_params, error);
 	if (!render->presenter)
 		return -ENODEV;

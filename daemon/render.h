@@ -96,6 +96,8 @@ void draw_in_between(struct render *render, const struct pacer_decision *decisio
 void draw_plain(struct render *render, uint64_t vblank);
 /* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
 void draw_count_report(struct render *render);
+/* Makes the engine and draws with it once. 0 or -errno with a sentence. */
+int draw_make_engine(struct render *render, struct error *error);
 /* Makes a lost engine anew when its time has come. Is there one? */
 bool draw_revive_engine(struct render *render, uint64_t now_ns);
 

@@ -107,8 +107,8 @@ static void track_delay(struct pacer *pacer, uint64_t now_ns)
 	const int64_t elapsed = now_ns > pacer->tracked_ns ? (int64_t)(now_ns - pacer->tracked_ns) : 0;
 
 	pacer->tracked_ns = now_ns;
-	if (pacer->delay_count <= DELAY_LEARNING)
-		pacer->delay_ns += off;
+	if (pacer->delay_count <= DELAY_LEARNING || fabs((double)off) > 2.0 * vblank_ns(pacer))
+		pacer->delay_ns += off; /* half the history agrees that it is elsewhere now */
 	else if (fabs((double)off) > vblank_ns(pacer))
 		pacer->delay_ns += limit(off, limit(elapsed, SECOND_NS) / 50);
 	else
@@ -209,7 +209,7 @@ static void decide_real(struct pacer *pacer, struct pacer_decision *decision)
 
 static void decide_later(const struct pacer *pacer, uint64_t vblank, struct pacer_decision *decision)
 {
-	decision->phase = phase_at(pacer, decision->target_ns);
+	decision->phase = fmax(-1.0, phase_at(pacer, decision->target_ns));
 	const bool over = vblank - pacer->first_vblank >= 8 || decision->phase > pacer->params.max_phase;
 	decision->show = pacer->interval_ns == 0 || pacer_passes_through(pacer) || over ? PACER_REPEAT : PACER_IN_BETWEEN;
 }
