@@ -153,10 +153,14 @@ static void show(const struct compare *compare, const struct drawn *drawn, const
 			continue;
 		const double x0 = sample_side(compare->least, x, y, reach, c, 0);
 		const double x1 = sample_side(compare->most, x, y, reach, c, 1);
+		interval->least[c] = x0 - BOUNDS_STEP;
+		interval->most[c] = x1 + BOUNDS_STEP;
+		if (!(t[1] > 0.0))
+			continue;
 		const double l0 = sample_side(&compare->bounds->low[0], x, y, reach, c, 0);
 		const double l1 = sample_side(&compare->bounds->low[1], x, y, reach, c, 1);
-		interval->least[c] = fmin(x0 + t[0] * (l0 - x0), x0 + t[1] * (l0 - x0)) - BOUNDS_STEP;
-		interval->most[c] = fmax(x1 + t[0] * (l1 - x1), x1 + t[1] * (l1 - x1)) + BOUNDS_STEP;
+		interval->least[c] += fmin(t[0] * (l0 - x0), t[1] * (l0 - x0));
+		interval->most[c] += fmax(t[0] * (l1 - x1), t[1] * (l1 - x1));
 	}
 }
 
@@ -281,7 +285,7 @@ static void count_pixel(const struct compare *compare, size_t pixel, struct boun
 	report->same += difference == 0;
 	report->within_one += difference <= 1;
 	report->within_two += difference <= 2;
-	report->sharp += one && compare->span[pixel] <= 3.0;
+	report->sharp += one && compare->span[pixel] <= 4.0;
 	report->plain += one && compare->plain[pixel];
 	report->plain_within_one += one && compare->plain[pixel] && difference <= 1;
 	if (compare->outside[pixel] <= 0.0) {

@@ -47,7 +47,8 @@ static void weight_range(const struct bounds *bounds, const struct bounds_triang
 	const struct reference *reference = bounds->reference;
 	const double phase = reference->timing.last_phase;
 	double sigma[2];
-	w[0] = w[1] = reference_weight(&reference->grid, triangle->v, phase, reference->blur);
+	w[0] = w[1] =
+		reference->geometry.moves ? reference_weight(&reference->grid, triangle->v, phase, reference->blur) : 0.0;
 	if (reference->blur != ENGINE_BLUR_DOUBTFUL)
 		return;
 	if (triangle->excused) {
@@ -111,22 +112,35 @@ static uint8_t push(const struct reference_compensation *how, double code, doubl
 static void channel_range(struct bounds *bounds, size_t at, double least_w, double most_w)
 {
 	const struct reference_compensation *how = &bounds->reference->compensation;
-	const double c = bounds->reference->original.data[at] / 255.0, w[2] = {least_w, most_w};
-	const double o = reference_to_light(&how->display, c);
+	const uint8_t original = bounds->reference->original.data[at];
+	const double c = original / 255.0, o = reference_to_light(&how->display, c);
+	const uint8_t low[2] = {bounds->low[0].data[at], bounds->low[1].data[at]};
 	double b[2] = {2.0, -1.0}, e[2] = {2.0, -1.0};
 	for (int k = 0; k < 4; k++) {
 		double between, real;
-		reference_compensate(how, c, bounds->low[k & 1].data[at] / 255.0, w[k >> 1], &between, &real);
+		if ((k & 1 && low[0] == low[1]) || (k >> 1 && least_w == most_w))
+			continue;
+		reference_compensate(how, c, low[k & 1] / 255.0, k >> 1 ? most_w : least_w, &between, &real);
 		b[0] = fmin(b[0], between);
 		b[1] = fmax(b[1], between);
 		e[0] = fmin(e[0], real);
 		e[1] = fmax(e[1], real);
 	}
 	for (int side = 0; side < 2; side++) {
-		const double sign = side ? 1.0 : -1.0;
-		bounds->between[side].data[at] =
-			most_w > 0.0 ? push(how, b[side], o, sign) : bounds->reference->original.data[at];
-		bounds->real[side].data[at] = most_w > 0.0 ? push(how, e[side], o, sign) : bounds->reference->original.data[at];
+		bounds->between[side].data[at] = push(how, b[side], o, side ? 1.0 : -1.0);
+		bounds->real[side].data[at] = push(how, e[side], o, side ? 1.0 : -1.0);
+	}
+}
+
+/* Where w is 0 for sure, B and E are the original, exactly. */
+static void pixel_range(struct bounds *bounds, size_t pixel, double least_w, double most_w)
+{
+	for (size_t at = pixel * 4; at < pixel * 4 + 3; at++) {
+		const uint8_t original = bounds->reference->original.data[at];
+		for (int side = 0; side < 2; side++)
+			bounds->between[side].data[at] = bounds->real[side].data[at] = original;
+		if (most_w > 0.0)
+			channel_range(bounds, at, least_w, most_w);
 	}
 }
 
@@ -148,8 +162,8 @@ void bounds_init(struct bounds *bounds, const struct reference *reference)
 	}
 	for (uint32_t t = 0; t < bounds->triangle_count; t++)
 		spread_weight(bounds, &bounds->triangles[t], least, most);
-	for (size_t i = 0; i < count * 4; i++)
-		channel_range(bounds, i, least[i / 4], most[i / 4]);
+	for (size_t i = 0; i < count; i++)
+		pixel_range(bounds, i, least[i], most[i]);
 	free(least);
 	free(most);
 }

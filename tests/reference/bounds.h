@@ -22,8 +22,9 @@
  *  - Bilinear weights have 8 bits (the least that Direct3D and Vulkan demand;
  *    llvmpipe has just these for 8-bit textures): BOUNDS_WEIGHT pixels of
  *    source position.
- *  - The filtered sample may be rounded to 8 bits before it is mixed and rounded
- *    again: BOUNDS_STEP steps (half a step each).
+ *  - llvmpipe filters 8-bit textures in 8 bits: each of its two interpolations
+ *    (along, then across) is rounded, then the mix of samples is rounded for the
+ *    display: BOUNDS_STEP, three times half a step.
  *  - Depth has 24 bits and is interpolated in float: two triangles that close
  *    (BOUNDS_DEPTH) at a pixel may be ordered either way.
  *  - A pixel centre that lies on a shared edge in source coordinates belongs to
@@ -41,7 +42,7 @@
 #define BOUNDS_SUBPIXEL (1.0 / 256.0)
 #define BOUNDS_EDGE (1.0 / 128.0)
 #define BOUNDS_WEIGHT (1.0 / 256.0)
-#define BOUNDS_STEP 1.0
+#define BOUNDS_STEP 1.5
 #define BOUNDS_DEPTH 4e-6
 #define BOUNDS_STRETCH 1e-4
 
@@ -67,7 +68,7 @@ void bounds_finish(struct bounds *bounds);
 struct bounds_report {
 	uint64_t pixels;
 	uint64_t same, within_one, within_two; /* |engine - reference| of the worst channel: 0, <= 1, <= 2 */
-	uint64_t sharp; /* one candidate, and no interval wider than 3 steps: what keeps the test honest */
+	uint64_t sharp; /* one candidate, and no interval wider than 4 steps: what keeps the test honest */
 	uint64_t plain, plain_within_one; /* one candidate, L, E, B certain, gradient below 16 steps a pixel */
 	uint64_t other;                   /* fits a candidate other than the nominal triangle only */
 	uint64_t excused;                 /* shows an undecided vertex */

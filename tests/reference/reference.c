@@ -16,7 +16,8 @@ static void fill_weight(struct reference *reference)
 	reference_warp(grid, reference->width, reference->height, 0.0, hits);
 	free(reference->weight);
 	reference->weight = reference_alloc(count, sizeof(double));
-	for (size_t i = 0; i < count; i++)
+	/* A frame that is not extrapolated has w = 0, with `everywhere` too (5, 8). */
+	for (size_t i = 0; i < count && reference->geometry.moves; i++)
 		reference->weight[i] =
 			reference_weight(grid, grid->triangles[hits[i].triangle].v, reference->timing.last_phase, reference->blur);
 	free(hits);

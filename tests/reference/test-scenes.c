@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The engine against the reference on all built-in scenes: two moments each,
+ * backward motion, depth and UI as a game would hand them in. The same bounds
+ * as in test-engine.c: no pixel outside, and the same shares.
+ */
+#include "client/scenes/scene.h"
+#include "engine-case.h"
+#include "input.h"
+#include "tests/scenes/context.h"
+#include "tests/test.h"
+
+#define WIDTH 320u
+#define HEIGHT 180u
+#define INTERVAL 0.025
+#define MAX_FRAMES 64
+
+struct scene_frame {
+	const char *scene;
+	double time;
+	struct frame frame;
+	uint8_t *memory;
+};
+
+static struct scene_frame frames[MAX_FRAMES];
+static size_t frame_count;
+static struct engine *engine;
+static struct case_totals totals;
+
+static void add_plane(struct pursuit_frame_header *header, uint32_t role, uint32_t format)
+{
+	struct pursuit_plane *plane = &header->planes[header->plane_count++];
+	plane->role = role;
+	plane->format = format;
+	plane->width = WIDTH;
+	plane->height = HEIGHT;
+	if (role == PURSUIT_ROLE_COLOR)
+		plane->transfer.curve = PURSUIT_CURVE_SRGB;
+}
+
+static void fill_header(struct pursuit_frame_header *header, const struct scene_camera *camera, bool ui)
+{
+	header->frame_id = 1;
+	header->real_interval_ns = (uint64_t)(INTERVAL * 1e9);
+	header->motion_kind = PURSUIT_MOTION_BACKWARD;
+	header->depth_kind = PURSUIT_DEPTH_DEVICE;
+	header->near_distance = camera->near_distance;
+	header->far_distance = camera->far_distance;
+	add_plane(header, PURSUIT_ROLE_COLOR, PURSUIT_FORMAT_BGRA8);
+	add_plane(header, PURSUIT_ROLE_DEPTH, PURSUIT_FORMAT_DEPTH32F);
+	add_plane(header, PURSUIT_ROLE_MOTION, PURSUIT_FORMAT_RG32F);
+	if (ui)
+		add_plane(header, PURSUIT_ROLE_UI, PURSUIT_FORMAT_BGRA8);
+}
+
+/* Rows of 320 pixels are multiples of 64 bytes in all formats: planes are packed as scene_read() packs them. */
+static bool read_frame(struct scene *scene, const char *name, double time)
+{
+	const struct scene_request request = {.time = time, .time_previous = time - INTERVAL, .time_next = time + INTERVAL};
+	struct scene_frame *out = &frames[frame_count];
+	struct pursuit_frame_header *header = &out->frame.header;
+	struct scene_textures textures = {0};
+	struct scene_camera camera = {0};
+	struct error error;
+	if (!scene_render(scene, &request, &textures, &camera))
+		return false;
+	fill_header(header, &camera, textures.ui != 0);
+	const uint64_t bytes = frame_layout(header);
+	out->memory = reference_alloc(bytes, 1);
+	if (frame_validate(header, bytes, NULL, NULL, &error) != 0)
+		return false;
+	for (uint32_t i = 0; i < header->plane_count; i++)
+		out->frame.planes[i] = out->memory + header->planes[i].offset;
+	const struct scene_pixels pixels = {
+		.color = out->memory + header->planes[0].offset,
+		.depth = (float *)(void *)(out->memory + header->planes[1].offset),
+		.backward = (float *)(void *)(out->memory + header->planes[2].offset),
+		.ui = header->plane_count > 3 ? out->memory + header->planes[3].offset : NULL,
+	};
+	if (!scene_read(scene, &pixels))
+		return false;
+	out->scene = name;
+	out->time = time;
+	frame_count++;
+	return true;
+}
+
+/* All frames are rendered, and the scenes' context is gone, before the engine makes its own. */
+static bool render_scenes(void)
+{
+	static const double times[] = {0.7, 2.35};
+	struct test_context context;
+	if (!test_context_init(&context, false))
+		return false;
+	for (const struct scene_info *info = scene_list(); info->name && frame_count + 2 <= MAX_FRAMES; info++) {
+		char text[256] = "";
+		struct scene *scene = scene_create(info->name, WIDTH, HEIGHT, test_context_lookup, text, sizeof(text));
+		CHECK_STRING(text, "");
+		CHECK(scene != NULL);
+		for (size_t t = 0; t < 2 && scene; t++)
+			CHECK(read_frame(scene, info->name, times[t]));
+		scene_destroy(&scene);
+	}
+	test_context_finish(&context);
+	return true;
+}
+
+static void run(const struct scene_frame *frame, size_t variant)
+{
+	static const struct engine_request thirds[] = {
+		{ENGINE_SHOW_REAL, 0.0}, {ENGINE_SHOW_IN_BETWEEN, 1.0 / 3}, {ENGINE_SHOW_IN_BETWEEN, 2.0 / 3}};
+	static const struct engine_request shifted[] = {
+		{ENGINE_SHOW_REAL, 0.25}, {ENGINE_SHOW_IN_BETWEEN, 0.5}, {ENGINE_SHOW_PLAIN, 0.5}};
+	static const enum engine_blur blurs[] = {ENGINE_BLUR_DOUBTFUL, ENGINE_BLUR_EVERYWHERE, ENGINE_BLUR_OFF};
+	char name[96];
+	const struct engine_case what = {
+		.name = name,
+		.params = {.method = "grid",
+				   .blur = blurs[variant],
+				   /* With pixels of 0.27 mm nothing is damped; on the default display fast things are. */
+				   .display_width_mm = variant == 0 ? input_display_mm(WIDTH) : 0.0f},
+		.begin = {.n = variant == 1 ? 2 : 3, .last_phase = -1.0},
+		.requests = variant == 1 ? shifted : thirds,
+		.request_count = 3};
+	snprintf(name, sizeof(name), "%s at %g s, blur %d", frame->scene, frame->time, blurs[variant]);
+	CHECK(engine_case_run(engine, &frame->frame, &what, &totals));
+}
+
+static void test_scenes(void)
+{
+	for (size_t i = 0; i < frame_count; i++)
+		for (size_t variant = 0; variant < 2; variant++)
+			run(&frames[i], variant ? 1 + i % 2 : 0);
+	case_totals_print(&totals);
+	CHECK(frame_count >= 16);
+}
+
+static void test_shares(void)
+{
+	for (int show = 0; show < 3; show++) {
+		const struct bounds_report *report = &totals.reports[show];
+		const double pixels = (double)report->pixels;
+		CHECK((double)report->plain_within_one >= CASE_PLAIN_WITHIN_ONE * (double)report->plain);
+		CHECK((double)report->other <= 0.01 * pixels);
+		CHECK((double)report->excused <= 0.005 * pixels);
+		CHECK((double)report->sharp >= 0.3 * pixels);
+	}
+}
+
+int main(void)
+{
+	struct engine_params params = {.method = "grid"};
+	struct error error = {""};
+	if (!render_scenes())
+		SKIP("no EGL surfaceless context to render scenes in");
+	engine = engine_create(&params, &error);
+	if (!engine)
+		SKIP(error.text);
+	RUN(test_scenes);
+	RUN(test_shares);
+	engine_destroy(&engine);
+	for (size_t i = 0; i < frame_count; i++)
+		free(frames[i].memory);
+	return test_result();
+}
