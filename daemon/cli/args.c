@@ -215,15 +215,14 @@ static void print_row(const struct arg_row *row)
 		printf("  %s\n  %-26s  ", left, "");
 	else
 		printf("  %-26s  ", left);
-	int column = 30;
+	int column = 29;
 	for (const char *word = row->help; *word;) {
 		int length = (int)strcspn(word, " ");
-		if (column + length > 110) {
+		bool turn = column + 1 + length > 110, first = word == row->help;
+		if (turn)
 			printf("\n  %-26s  ", "");
-			column = 30;
-		}
-		printf("%.*s ", length, word);
-		column += length + 1;
+		printf("%s%.*s", first || turn ? "" : " ", length, word);
+		column = (turn ? 29 : column) + 1 + length;
 		word += length;
 		word += strspn(word, " ");
 	}

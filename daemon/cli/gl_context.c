@@ -5,6 +5,9 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
+
+#define NAME_OF_RENDERER 0x1F01u /* GL_RENDERER */
 
 struct gl_context {
 	const struct gl_context_kind *kind;
@@ -60,4 +63,15 @@ gl_context_lookup gl_context_get_lookup(const struct gl_context *context)
 const char *gl_context_name(const struct gl_context *context)
 {
 	return context->kind->name;
+}
+
+const char *gl_context_renderer(const struct gl_context *context, bool *software)
+{
+	void *found = context->kind->lookup("glGetString");
+	const unsigned char *(*get_string)(unsigned name);
+	memcpy(&get_string, &found, sizeof(found));
+	const char *name = found ? (const char *)get_string(NAME_OF_RENDERER) : NULL;
+	name = name ? name : "";
+	*software = strstr(name, "llvmpipe") || strstr(name, "softpipe") || strstr(name, "swrast");
+	return name;
 }

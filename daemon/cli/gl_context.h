@@ -40,4 +40,7 @@ typedef void *(*gl_context_lookup)(const char *name);
 gl_context_lookup gl_context_get_lookup(const struct gl_context *context);
 const char *gl_context_name(const struct gl_context *context);
 
+/* GL_RENDERER of the context, which is current, "" if unknown; *software: it is one of Mesa's CPU renderers. */
+const char *gl_context_renderer(const struct gl_context *context, bool *software);
+
 #endif

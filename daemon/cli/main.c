@@ -17,6 +17,7 @@ struct verb {
 };
 
 static const struct verb verbs[] = {
+	{"demo", verb_demo, "run the daemon and a scene that feeds it, and report what was displayed"},
 	{"record", verb_record, "write a built-in scene, or what a running daemon receives, into a recording"},
 	{"replay", verb_replay, "play a recording headless and deterministically, score it, compare it"},
 	{"import", verb_import, "make a recording from sequences of images"},

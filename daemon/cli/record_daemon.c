@@ -41,8 +41,8 @@ static int stop(struct control *control, const char *path, struct error *error)
 	int result = control_ask(control, "record-stop", -1, &reply, error);
 	if (result < 0)
 		return result;
-	json_int_t frames = number_of(reply, "frames_written"), dropped = number_of(reply, "frames_dropped");
-	printf("%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", path, frames, (double)number_of(reply, "bytes_written") / 1e6);
+	json_int_t frames = number_of(reply, "frames"), dropped = number_of(reply, "dropped");
+	printf("%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", path, frames, (double)number_of(reply, "bytes") / 1e6);
 	if (dropped)
 		printf(", %" JSON_INTEGER_FORMAT " frames dropped because the disk was slower", dropped);
 	printf("\n");

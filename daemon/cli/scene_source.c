@@ -169,6 +169,24 @@ static bool render(struct scene_source *source, const struct scene_request *requ
 	return true;
 }
 
+bool scene_source_render(struct scene_source *source, double time, double time_previous,
+                         struct scene_textures *textures, struct scene_camera *camera)
+{
+	const struct scene_request request = {.time = time, .time_previous = time_previous, .time_next = time};
+	return gl_context_make_current(source->context) && scene_render(source->scene, &request, textures, camera);
+}
+
+scene_gl_lookup scene_source_lookup(const struct scene_source *source)
+{
+	return gl_context_get_lookup(source->context);
+}
+
+const char *scene_source_renderer(struct scene_source *source, bool *software)
+{
+	gl_context_make_current(source->context);
+	return gl_context_renderer(source->context, software);
+}
+
 bool scene_source_frame(struct scene_source *source, uint64_t index, struct frame *frame)
 {
 	const struct arg_rate *rate = &source->params.rate;

@@ -43,6 +43,17 @@ bool scene_source_frame(struct scene_source *source, uint64_t index, struct fram
 /* The truth at a moment, in seconds: BGRA8 with the UI over it, packed rows, alpha 255, into width x height x 4 bytes. */
 bool scene_source_truth(struct scene_source *source, double time, uint8_t *picture);
 
+/*
+ * Renders a moment, with motion since time_previous, and leaves it in textures
+ * for a reader of its own (the client shim's), the context current.
+ */
+bool scene_source_render(struct scene_source *source, double time, double time_previous,
+                         struct scene_textures *textures, struct scene_camera *camera);
+scene_gl_lookup scene_source_lookup(const struct scene_source *source);
+
+/* GL_RENDERER of the context; of a CPU renderer? */
+const char *scene_source_renderer(struct scene_source *source, bool *software);
+
 /* Nanoseconds from frame 0 to frame `index` at a rate, rounded down; exact. */
 uint64_t scene_source_time(const struct arg_rate *rate, uint64_t index);
 

@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The game of the demo: renders a built-in scene in real time, on an absolute
+ * grid of times, and submits it through libpursuit's GL helper. One thread.
+ */
+#ifndef PURSUIT_CLI_DEMO_CLIENT_H
+#define PURSUIT_CLI_DEMO_CLIENT_H
+
+#include <jansson.h>
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "scene_source.h"
+
+struct demo_client_params {
+	struct scene_source *source; /* the caller's; its context is used */
+	struct arg_size size;
+	struct arg_rate rate;
+	const char *socket;
+};
+
+struct demo_client;
+
+/* Renders once, so that all shaders are compiled, and waits until the daemon has attached the stream. */
+struct demo_client *demo_client_create(const struct demo_client_params *params, struct error *error);
+void demo_client_destroy(struct demo_client **client);
+
+/* Goes on rendering for so many seconds; stops early when `stop` says so (asked once a frame). */
+int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(void *context), void *context,
+                    struct error *error);
+
+/* CLOCK_MONOTONIC of the scene's time 0. */
+uint64_t demo_client_epoch(const struct demo_client *client);
+
+/* {"frames", "skipped_frames", "render_ms", "submit_us", ...} */
+json_t *demo_client_json(struct demo_client *client);
+
+#endif
