@@ -29,12 +29,21 @@ static float mixf(float a, float b, float t)
 	return a + (b - a) * t;
 }
 
-static float lattice(int x, int y, int period_x, int period_y, uint32_t seed)
+static int wrap(int x, int period)
 {
-	x = ((x % period_x) + period_x) % period_x;
-	y = ((y % period_y) + period_y) % period_y;
-	return (float)(scene_hash((uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^ seed * 0xc2b2ae3du) >> 8) *
-	       (1.0f / 16777216.0f);
+	while (x >= period)
+		x -= period;
+	while (x < 0)
+		x += period;
+	return x;
+}
+
+static float lattice(int x, int y, uint32_t seed)
+{
+	uint32_t h = (uint32_t)x * 0x9e3779b1u ^ (uint32_t)y * 0x85ebca77u ^ seed * 0xc2b2ae3du;
+	h = (h ^ (h >> 15)) * 0x2c1b3c6du;
+	h = (h ^ (h >> 12)) * 0x297a2d39u;
+	return (float)(h >> 8) * (1.0f / 16777216.0f);
 }
 
 /* Value noise that repeats after u = 1 and v = 1, with period_x by period_y lattice points. */
@@ -42,13 +51,13 @@ static float noise(float u, float v, int period_x, int period_y, uint32_t seed)
 {
 	float x = u * (float)period_x, y = v * (float)period_y;
 	float fx = floorf(x), fy = floorf(y);
-	int ix = (int)fx, iy = (int)fy;
+	int x0 = wrap((int)fx, period_x), y0 = wrap((int)fy, period_y);
+	int x1 = x0 + 1 == period_x ? 0 : x0 + 1, y1 = y0 + 1 == period_y ? 0 : y0 + 1;
 	float tx = x - fx, ty = y - fy;
 	tx = tx * tx * (3.0f - 2.0f * tx);
 	ty = ty * ty * (3.0f - 2.0f * ty);
-	float low = mixf(lattice(ix, iy, period_x, period_y, seed), lattice(ix + 1, iy, period_x, period_y, seed), tx);
-	float high = mixf(lattice(ix, iy + 1, period_x, period_y, seed),
-	                  lattice(ix + 1, iy + 1, period_x, period_y, seed), tx);
+	float low = mixf(lattice(x0, y0, seed), lattice(x1, y0, seed), tx);
+	float high = mixf(lattice(x0, y1, seed), lattice(x1, y1, seed), tx);
 	return mixf(low, high, ty);
 }
 
