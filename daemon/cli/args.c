@@ -33,6 +33,18 @@ int args_failed(const char *verb, const char *format, ...)
 	return STATUS_FAILED;
 }
 
+int args_check_method(const char *verb, const char *method)
+{
+	char names[200] = "";
+	for (const struct engine_method_info *info = engine_methods(); info->name; info++) {
+		size_t used = strlen(names);
+		if (strcmp(info->name, method) == 0)
+			return STATUS_DONE;
+		snprintf(names + used, sizeof(names) - used, "%s%s", used ? ", " : "", info->name);
+	}
+	return args_wrong(verb, "--method is %s, must be one of %s", method, names);
+}
+
 unsigned args_distance(const char *a, const char *b)
 {
 	unsigned row[NAME_MAX_LENGTH + 1];

@@ -70,6 +70,9 @@ __attribute__((format(printf, 2, 3))) int args_wrong(const char *verb, const cha
 /* "pursuit VERB: sentence" on stderr. Gives STATUS_FAILED back. */
 __attribute__((format(printf, 2, 3))) int args_failed(const char *verb, const char *format, ...);
 
+/* STATUS_DONE, or a usage error that lists the methods of the engine. */
+int args_check_method(const char *verb, const char *method);
+
 bool args_read_rate(const char *text, struct arg_rate *rate);
 
 /* How many letters to change, add or leave out to get from a to b; for "did you mean". */

@@ -3,6 +3,7 @@
 
 #include "demo_daemon.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -180,6 +181,20 @@ static int reap(struct demo_daemon *daemon, struct error *error)
 	return 0;
 }
 
+/* A daemon that died left its socket and its lock behind; nobody else has files in this folder. */
+static void remove_folder(const char *path)
+{
+	DIR *folder = *path ? opendir(path) : NULL;
+	if (!folder)
+		return;
+	for (struct dirent *entry; (entry = readdir(folder));) {
+		if (entry->d_name[0] != '.')
+			unlinkat(dirfd(folder), entry->d_name, 0);
+	}
+	closedir(folder);
+	rmdir(path);
+}
+
 int demo_daemon_stop(struct demo_daemon *daemon, struct error *error)
 {
 	int result = 0;
@@ -190,9 +205,6 @@ int demo_daemon_stop(struct demo_daemon *daemon, struct error *error)
 	else if (started)
 		result = error_set(error, -ECHILD, "pursuitd died; see %s", daemon->log);
 	daemon->pid = 0;
-	if (daemon->socket[0])
-		unlink(daemon->socket);
-	if (daemon->folder[0])
-		rmdir(daemon->folder);
+	remove_folder(daemon->folder);
 	return result;
 }

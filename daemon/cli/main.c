@@ -3,6 +3,7 @@
 
 /* pursuit: the command. A table of verbs, each in a file of its own. */
 
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -53,6 +54,7 @@ static int unknown_verb(const char *name)
 
 int main(int argc, char **argv)
 {
+	signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is an error like a full disk */
 	if (argc < 2) {
 		print_help(stderr);
 		return STATUS_USAGE;

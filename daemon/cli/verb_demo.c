@@ -292,6 +292,10 @@ static void print_summary(const struct demo *demo, const json_t *report)
 static int leave_results(struct demo *demo, struct error *error)
 {
 	int result = score(demo, error);
+	if (result == -ENODATA) {
+		fprintf(stderr, "pursuit demo: nothing is scored: no frame was recorded in time\n");
+		result = 0;
+	}
 	if (result == 0)
 		result = draw_timeline(demo, error);
 	json_t *report = make_report(demo);
@@ -356,6 +360,9 @@ int verb_demo(int argc, char **argv)
 		scene_source_unknown(demo.options.scene, &error);
 		return args_wrong(VERB, "%s", error.text);
 	}
+	status = args_check_method(VERB, demo.options.settings.method);
+	if (status != STATUS_DONE)
+		return status;
 	status = run_demo(&demo);
 	finish(&demo);
 	return status;
