@@ -42,6 +42,8 @@ struct plan_vertex {
 	float snapped; /* 1: at a discontinuity, 0: not */
 };
 
+struct plan_kernels;
+
 struct plan {
 	uint64_t frame_id;
 	uint32_t width, height; /* of colour */
@@ -62,6 +64,7 @@ struct plan {
 	uint32_t vertex_capacity, index_capacity;
 	void *scratch;
 	size_t scratch_bytes;
+	const struct plan_kernels *kernels; /* of the machine, found with the first frame */
 };
 
 /* A zeroed struct plan is ready for use. */

@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* No allocation in the steady state; planes that change under the reader. */
+#include <errno.h>
 #include <pthread.h>
 #include <stdatomic.h>
 
@@ -10,6 +11,7 @@
 #include "tests/test.h"
 
 static atomic_int allocations;
+static atomic_int fails_at; /* the allocation, counted from 1, that fails; 0: none */
 
 /* The linker sends the analysis here (--wrap). */
 void *__real_malloc(size_t size);
@@ -19,14 +21,13 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size);
 
 void *__wrap_malloc(size_t size)
 {
-	atomic_fetch_add(&allocations, 1);
-	return __real_malloc(size);
+	return atomic_fetch_add(&allocations, 1) + 1 == atomic_load(&fails_at) ? NULL : __real_malloc(size);
 }
 
 void *__wrap_aligned_alloc(size_t alignment, size_t size)
 {
-	atomic_fetch_add(&allocations, 1);
-	return __real_aligned_alloc(alignment, size);
+	bool fails = atomic_fetch_add(&allocations, 1) + 1 == atomic_load(&fails_at);
+	return fails ? NULL : __real_aligned_alloc(alignment, size);
 }
 
 static const struct fixture_spec big = {200, 150, .motion_format = PURSUIT_FORMAT_RG32F,
@@ -68,6 +69,35 @@ static void test_still_frames_need_no_grid(void)
 	fixture_make(&fixture, &big);
 	CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), 0);
 	CHECK(plan.rest == PLAN_STILL && !plan.vertices && !plan.indices);
+	plan_finish(&plan);
+	fixture_finish(&fixture);
+}
+
+static void test_no_memory_is_said(void)
+{
+	struct plan_params params = {.last_phase = 0.5f, .display_width_mm = 1};
+	struct plan plan = {0};
+	struct fixture fixture;
+	struct error error;
+	fixture_make(&fixture, &big);
+	fixture_fill(&fixture, FIELD_LAYERS, 1);
+	for (int i = 1; i <= 3; i++) {
+		error.text[0] = '\0';
+		atomic_store(&fails_at, atomic_load(&allocations) + i);
+		CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), -ENOMEM);
+		CHECK(strstr(error.text, "200 x 150") != NULL);
+		CHECK(plan.columns == 0 && plan.rows == 0 && plan.index_count == 0);
+		plan_finish(&plan);
+	}
+	atomic_store(&fails_at, 0);
+	CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), 0);
+	/* A bigger one that does not fit, then one that does. */
+	params.cell = 4;
+	atomic_store(&fails_at, atomic_load(&allocations) + 2);
+	CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), -ENOMEM);
+	atomic_store(&fails_at, 0);
+	CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), 0);
+	CHECK_INT(plan.columns, 52);
 	plan_finish(&plan);
 	fixture_finish(&fixture);
 }
@@ -188,6 +218,7 @@ int main(void)
 {
 	RUN(test_no_allocation_in_the_steady_state);
 	RUN(test_still_frames_need_no_grid);
+	RUN(test_no_memory_is_said);
 	RUN(test_planes_that_change_under_the_reader);
 	RUN(test_nothing_is_read_beyond_the_planes);
 	return test_result();

@@ -142,7 +142,10 @@ int plan_make_with(struct plan *plan, const struct frame *frame, const struct pl
 
 int plan_make(struct plan *plan, const struct frame *frame, const struct plan_params *params, struct error *error)
 {
-	return plan_make_with(plan, frame, params, plan_level_kernels(plan_level_best()), error);
+	/* Asking the machine costs microseconds: the CPUID instruction leaves a virtual machine. */
+	if (!plan->kernels)
+		plan->kernels = plan_level_kernels(plan_level_best());
+	return plan_make_with(plan, frame, params, plan->kernels, error);
 }
 
 void plan_finish(struct plan *plan)
