@@ -75,7 +75,7 @@ bool pattern_name(const char *pattern, uint64_t number, char name[PATTERN_MAX_PA
 	if (!at || strlen(pattern) > PATTERN_MAX_PATH - 16 || number > PATTERN_MAX_NUMBER)
 		return false;
 	char *to = append(name, pattern, at);
-	to += sprintf(to, "%0*" PRIu64, width, number);
+	to += snprintf(to, 16, "%0*" PRIu64, width, number);
 	to = append(to, at + length, at + strlen(at));
 	*to = '\0';
 	return true;

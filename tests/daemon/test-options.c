@@ -119,7 +119,8 @@ static void test_config_round_trip(void)
 	fclose(out);
 	settings_defaults(&defaults);
 	memset(&loaded, 0, sizeof(loaded));
-	for (char *line = strtok(text, "\n"); line; line = strtok(NULL, "\n")) {
+	char *rest = text;
+	for (char *line = strsep(&rest, "\n"); line; line = strsep(&rest, "\n")) {
 		if (line[0] != '#' || line[1] == ' ')
 			continue;
 		const char *path = file_with(line + 1); /* a commented default, uncommented */
