@@ -6,12 +6,10 @@
  * "Selective Blur"; docs/method.md, 5 and 6). Drawn over the undisplaced triangles, or with WEIGHT_ONE over everything.
  */
 #include "transfer.glsl"
-#include "low.glsl"
 #include "stretch.glsl"
 
 uniform sampler2D u_picture;
-uniform sampler2D u_level;
-uniform float u_level_scale;
+uniform sampler2D u_low;
 uniform float u_count; /* N */
 uniform float u_boost; /* k, 0 to 1 */
 
@@ -35,7 +33,7 @@ float blur_weight()
 void main()
 {
 	vec3 code = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb;
-	vec3 low = low_frequency(u_level, floor(gl_FragCoord.xy), u_level_scale);
+	vec3 low = texelFetch(u_low, ivec2(gl_FragCoord.xy), 0).rgb;
 	vec3 mixed = mix(code, low, blur_weight());
 #ifdef NO_COMPENSATION
 	o_real = vec4(code, 1.0);

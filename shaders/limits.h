@@ -30,6 +30,6 @@
 
 /* Texture units. */
 #define UNIT_PICTURE 0
-#define UNIT_LEVEL 1
+#define UNIT_LOW 1
 
 #endif

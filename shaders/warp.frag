@@ -6,15 +6,13 @@
  * that are stretched too far fade to the low-frequency layer (5.1 "Selective Blur").
  */
 #ifdef TEAR
-#include "low.glsl"
 #include "stretch.glsl"
 
-uniform sampler2D u_level;
-uniform float u_level_scale;
+uniform sampler2D u_low;
+uniform vec2 u_size;
 #endif
 
 uniform sampler2D u_picture;
-uniform vec2 u_size;
 
 in vec2 v_source;
 
@@ -22,15 +20,14 @@ out vec4 o_color;
 
 void main()
 {
-	vec3 color = texture(u_picture, v_source / u_size).rgb;
+	vec3 color = texture(u_picture, v_source).rgb;
 #ifdef TEAR
 	/* These are the columns of the inverse map; its larger singular value over its determinant is the stretch. */
-	vec2 dx = dFdx(v_source);
-	vec2 dy = dFdy(v_source);
+	vec2 dx = dFdx(v_source) * u_size;
+	vec2 dy = dFdy(v_source) * u_size;
 	float area = max(abs(dx.x * dy.y - dx.y * dy.x), 1e-12);
 	float tear = smoothstep(TEAR_FROM, TEAR_FULL, larger_singular_value(dx, dy) / area - 1.0);
-	vec3 low = low_frequency_between(u_level, v_source - 0.5, u_level_scale, u_size);
-	color = mix(color, low, tear);
+	color = mix(color, texture(u_low, v_source).rgb, tear);
 #endif
 	o_color = vec4(color, 1.0);
 }

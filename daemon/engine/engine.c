@@ -75,7 +75,8 @@ fail:
 static void delete_objects(struct engine *engine)
 {
 	const struct gl *gl = engine_gl(engine);
-	struct target *const targets[] = { &engine->color, &engine->real, &engine->between, &engine->shown, &engine->ui };
+	struct target *const targets[] = { &engine->color, &engine->real, &engine->between,
+		                                 &engine->low,   &engine->shown, &engine->ui };
 	for (size_t i = 0; i < sizeof(targets) / sizeof(targets[0]); i++)
 		target_finish(targets[i], gl);
 	for (int i = 0; i < MAX_LEVELS; i++)
@@ -84,6 +85,8 @@ static void delete_objects(struct engine *engine)
 	gl->DeleteFramebuffers(1, &engine->depth_framebuffer);
 	gl->DeleteRenderbuffers(1, &engine->depth);
 	gl->DeleteVertexArrays(1, &engine->no_attributes);
+	gl->DeleteVertexArrays(1, &engine->tile_array);
+	gl->DeleteBuffers(1, &engine->tile_vertices);
 	warp_mesh_finish(&engine->mesh, gl);
 	program_cache_finish(&engine->programs, gl);
 	timer_finish(&engine->timer, gl);
@@ -103,6 +106,7 @@ void engine_destroy(struct engine **engine)
 	}
 	plan_finish(&gone->plan);
 	free(gone->staging);
+	free(gone->tile_numbers);
 	free(gone);
 	*engine = NULL;
 }
@@ -132,7 +136,8 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 	timer_drop(&engine->timer);
 	report_begin(&engine->report, frame->header.frame_id, timer_source(&engine->timer));
 	engine->job = (struct job){ .frame = frame };
-	engine->begun = engine->moves = engine->compensated = engine->tears = engine->has_levels = false;
+	engine->begun = engine->moves = engine->compensated = false;
+	engine->levels_made = LEVELS_NONE;
 	engine->n = params->n < 1 ? 1 : params->n > 8 ? 8 : params->n;
 	engine->real_interval_ns = params->real_interval_ns;
 	engine->last_phase = params->last_phase >= 0.0 ? fmin(params->last_phase, 8.0) : (engine->n - 1.0) / engine->n;

@@ -7,10 +7,11 @@
 
 #include "daemon/engine/state.h"
 
-/* All functions are mandatory and called with the context current, on the engine's thread. */
+/* The functions are mandatory and called with the context current, on the engine's thread. */
 struct method {
 	const char *name;
 	const char *description; /* one line */
+	float tolerance; /* of merged cells (merge.h), pixels */
 	/* Colour and UI are uploaded; the frame's planes are still there. 0 or a negative errno with a sentence. */
 	int (*begin)(struct engine *engine, struct error *error);
 	/* Makes the picture, without UI, and says where it is. */

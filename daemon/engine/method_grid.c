@@ -12,6 +12,9 @@
 /* Closer to the real frame's own moment than this, it is shown undisplaced. */
 #define SAME_MOMENT 0.05
 
+/* Merges only what moves alike to far less than the 1/256 pixel that renderers know. */
+#define GRID_TOLERANCE 0.0005f
+
 static double smoothstep(double from, double to, double x)
 {
 	double t = (x - from) / (to - from);
@@ -24,7 +27,7 @@ static const char *why_no_blur(const struct engine *engine)
 {
 	if (engine->params.blur == ENGINE_BLUR_OFF)
 		return "off";
-	if (engine->params.blur == ENGINE_BLUR_DOUBTFUL && !engine->mesh.doubtful_count)
+	if (engine->params.blur == ENGINE_BLUR_DOUBTFUL && !engine->mesh.doubtful.count)
 		return "no-distortion";
 	if (engine->params.no_compensation)
 		return NULL;
@@ -53,25 +56,36 @@ static int make_layers(struct engine *engine, struct error *error)
 {
 	const char *reason = why_no_blur(engine);
 	engine->compensated = !reason;
-	engine->tears = engine->params.blur != ENGINE_BLUR_OFF && engine->mesh.torn_count;
 	if (reason)
 		report_leave_out(&engine->report, "blur", reason);
 	if (reason || engine->params.no_compensation)
 		report_leave_out(&engine->report, "boost", reason ? reason : "off");
-	int result = 0;
-	engine->has_levels = engine->compensated || engine->tears;
-	if (engine->has_levels)
-		result = pass_run(engine, PASS_PYRAMID, error);
-	if (result == 0 && engine->compensated)
-		result = pass_run(engine, PASS_COMPENSATE, error);
-	return result;
+	if (!engine->compensated)
+		return 0;
+	int result = pass_run(engine, PASS_PYRAMID, error);
+	return result < 0 ? result : pass_run(engine, PASS_COMPENSATE, error);
 }
 
-static int upload_mesh(struct engine *engine, bool ordered, struct error *error)
+/* Whether depth settles what lies before what; if all of it is equal, drawing order does. */
+static bool depth_varies(const struct plan *plan)
 {
-	int result = warp_mesh_upload(&engine->mesh, engine_gl(engine), &engine->plan, ordered, error);
-	engine->report.bytes_up += engine->mesh.bytes;
-	return result;
+	for (uint32_t i = 1; i < plan->columns * plan->rows; i++)
+		if (plan->vertices[i].z != plan->vertices[0].z)
+			return true;
+	return false;
+}
+
+/* The triangles for the GPU: merged where that changes nothing that could be seen. */
+static int make_mesh(struct engine *engine, struct error *error)
+{
+	const struct gl *gl = engine_gl(engine);
+	engine->has_depth = depth_varies(&engine->plan);
+	/* Merging changes the drawing order. */
+	bool merge = engine->has_depth || !engine->plan.folded;
+	int result = warp_mesh_begin(&engine->mesh, gl, &engine->plan, merge ? engine->method->tolerance : -1.0f, error);
+	if (result < 0)
+		return result;
+	return warp_mesh_sort_doubtful(&engine->mesh, gl, engine->params.blur_level, error);
 }
 
 int grid_begin(struct engine *engine, struct error *error)
@@ -85,22 +99,31 @@ int grid_begin(struct engine *engine, struct error *error)
 		return 0;
 	}
 	note_plan(engine);
+	engine->levels_everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
 	engine->boost = 1.0 - smoothstep(BLOCH_FROM, BLOCH_GONE, engine->plan.real_interval_s);
-	/* Where depths are all equal, a fold is settled by drawing order. */
-	result = upload_mesh(engine, engine->plan.folded && !engine->has_depth, error);
+	result = make_mesh(engine, error);
 	return result < 0 ? result : make_layers(engine, error);
 }
 
-/* The lists hold from phase 0 to the last one, where stretch is convex in the phase; elsewhere all is looked at anew. */
-static int leave_range(struct engine *engine, double phase, struct error *error)
+/* The mesh for a phase, and L if something is torn there. */
+static int sort_mesh(struct engine *engine, double phase, struct error *error)
 {
-	int result = engine->mesh.ordered ? 0 : upload_mesh(engine, true, error);
-	if (result < 0 || engine->tears || engine->params.blur == ENGINE_BLUR_OFF)
+	bool tears = engine->params.blur != ENGINE_BLUR_OFF;
+	struct warp_mesh *mesh = &engine->mesh;
+	int result = warp_mesh_sort(mesh, engine_gl(engine), (float)phase, tears, !engine->has_depth, error);
+	/* Merged without a look at depths, since nothing folds at the last phase; but here it does. */
+	if (result == 0 && mesh->folds.count && !engine->plan.folded && mesh->count < engine->plan.index_count) {
+		result = warp_mesh_begin(mesh, engine_gl(engine), &engine->plan, -1.0f, error);
+		if (result == 0)
+			result = warp_mesh_sort(mesh, engine_gl(engine), (float)phase, tears, !engine->has_depth, error);
+	}
+	if (result < 0 || (!mesh->torn.count && !mesh->folded_torn.count))
 		return result;
-	engine->tears = warp_mesh_tears(&engine->plan, (float)phase);
-	if (!engine->tears || engine->has_levels)
+	/* Stretch is convex in the phase: up to the last one, what is torn is also marked for blur. */
+	bool marked = phase >= 0.0 && phase <= engine->last_phase;
+	if (engine->levels_made == LEVELS_ALL || (marked && engine->levels_made == LEVELS_MARKED))
 		return 0;
-	engine->has_levels = true;
+	engine->levels_everywhere = !marked;
 	return pass_run(engine, PASS_PYRAMID, error);
 }
 
@@ -115,7 +138,7 @@ int grid_show(struct engine *engine, enum engine_show show, double phase, const 
 		*picture = real ? &engine->real : &engine->between;
 	if (real && fabs(phase) <= SAME_MOMENT)
 		return 0;
-	int result = phase >= 0.0 && phase <= engine->last_phase ? 0 : leave_range(engine, phase, error);
+	int result = sort_mesh(engine, phase, error);
 	if (result < 0)
 		return result;
 	engine->job.picture = *picture;
@@ -128,6 +151,7 @@ int grid_show(struct engine *engine, enum engine_show show, double phase, const 
 const struct method method_grid = {
 	.name = "grid",
 	.description = "the picture on a grid that snaps to motion edges (Didyk et al. 2010)",
+	.tolerance = GRID_TOLERANCE,
 	.begin = grid_begin,
 	.show = grid_show,
 };

@@ -43,15 +43,13 @@ static unsigned variant(const struct engine *engine)
 static void bind(const struct engine *engine, const struct program *program)
 {
 	const struct gl *gl = engine_gl(engine);
-	uint32_t level = engine->params.blur_level;
-	gl->ActiveTexture(GL_TEXTURE0 + UNIT_LEVEL);
-	gl->BindTexture(GL_TEXTURE_2D, engine->levels[level - 1].texture);
+	gl->ActiveTexture(GL_TEXTURE0 + UNIT_LOW);
+	gl->BindTexture(GL_TEXTURE_2D, engine->low.texture);
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
 	gl->BindTexture(GL_TEXTURE_2D, engine->color.texture);
 	gl->Uniform2f(program->size, (float)engine->color.width, (float)engine->color.height);
 	gl->Uniform1f(program->shift, 0.0f);
 	gl->Uniform1f(program->last_phase, (float)engine->last_phase);
-	gl->Uniform1f(program->level_scale, 1.0f / (float)(1u << level));
 	gl->Uniform1f(program->count, (float)engine->n);
 	gl->Uniform1f(program->boost, (float)engine->boost);
 	gl->Uniform1f(program->gamma, engine->params.gamma);
@@ -78,7 +76,7 @@ static int run(struct engine *engine, struct error *error)
 		gl->BindVertexArray(engine->no_attributes);
 		gl->DrawArrays(GL_TRIANGLES, 0, 6);
 	} else {
-		warp_mesh_draw_doubtful(&engine->mesh, gl);
+		warp_mesh_draw(&engine->mesh, gl, engine->mesh.doubtful);
 	}
 	return 0;
 }

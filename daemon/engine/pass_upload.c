@@ -112,10 +112,9 @@ static int upload_ui(struct engine *engine, int index, struct error *error)
 static int run(struct engine *engine, struct error *error)
 {
 	const struct frame *frame = engine->job.frame;
-	int color = find_plane(&frame->header, PURSUIT_ROLE_COLOR), depth = find_plane(&frame->header, PURSUIT_ROLE_DEPTH);
+	int color = find_plane(&frame->header, PURSUIT_ROLE_COLOR);
 	if (color < 0)
 		return error_set(error, -EINVAL, "frame %llu has no colour plane", (unsigned long long)frame->header.frame_id);
-	engine->has_depth = depth >= 0 && frame->header.depth_kind != PURSUIT_DEPTH_NONE;
 	int result = upload_color(engine, color, error);
 	return result < 0 ? result : upload_ui(engine, find_plane(&frame->header, PURSUIT_ROLE_UI), error);
 }

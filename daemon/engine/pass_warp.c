@@ -35,26 +35,6 @@ static int make_depth(struct engine *engine, struct error *error)
 	return 0;
 }
 
-/* Draws go to `shown`, with depth if triangles may lie over each other. */
-static int open_target(struct engine *engine, bool depth, struct error *error)
-{
-	const struct gl *gl = engine_gl(engine);
-	int result = target_resize(&engine->shown, gl, engine->color.width, engine->color.height, error);
-	if (result < 0)
-		return result;
-	if (depth && (result = make_depth(engine, error)) < 0)
-		return result;
-	target_draw_to(&engine->shown, gl);
-	gl->Enable(GL_CULL_FACE);
-	if (!depth)
-		return 0;
-	gl->BindFramebuffer(GL_FRAMEBUFFER, engine->depth_framebuffer);
-	gl->Enable(GL_DEPTH_TEST);
-	const float far = 1.0f;
-	gl->ClearBufferfv(GL_DEPTH, 0, &far);
-	return 0;
-}
-
 static bool use(struct engine *engine, unsigned variant, struct error *error)
 {
 	const struct gl *gl = engine_gl(engine);
@@ -64,44 +44,67 @@ static bool use(struct engine *engine, unsigned variant, struct error *error)
 	gl->Uniform2f(program->size, (float)engine->color.width, (float)engine->color.height);
 	gl->Uniform1f(program->shift, (float)engine->job.phase);
 	gl->Uniform1f(program->last_phase, 0.0f);
-	gl->Uniform1f(program->level_scale, 1.0f / (float)(1u << engine->params.blur_level));
 	return true;
 }
 
-/* Torn triangles are few and cost more, so they have a list and a program of their own, unless order matters. */
+static void bind_textures(const struct engine *engine)
+{
+	const struct gl *gl = engine_gl(engine);
+	if (engine->levels_made != LEVELS_NONE) {
+		gl->ActiveTexture(GL_TEXTURE0 + UNIT_LOW);
+		gl->BindTexture(GL_TEXTURE_2D, engine->low.texture);
+	}
+	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
+	gl->BindTexture(GL_TEXTURE_2D, engine->job.picture->texture);
+}
+
+static int draw_folded(struct engine *engine, struct error *error)
+{
+	const struct gl *gl = engine_gl(engine);
+	const struct warp_mesh *mesh = &engine->mesh;
+	const float far = 1.0f;
+	if (!use(engine, mesh->keep_order && mesh->folded_torn.count ? VARIANT_TEAR : 0, error))
+		return -EIO;
+	gl->BindFramebuffer(GL_FRAMEBUFFER, engine->depth_framebuffer);
+	gl->Enable(GL_DEPTH_TEST);
+	gl->ClearBufferfv(GL_DEPTH, 0, &far);
+	warp_mesh_draw(mesh, gl, mesh->folded);
+	if (!mesh->keep_order && mesh->folded_torn.count) {
+		if (!use(engine, VARIANT_TEAR, error))
+			return -EIO;
+		warp_mesh_draw(mesh, gl, mesh->folded_torn);
+	}
+	gl->Disable(GL_DEPTH_TEST);
+	return 0;
+}
+
+/* Most triangles need nothing; few are torn; those that may lie over each other come last, with depth. */
 static int draw(struct engine *engine, struct error *error)
 {
 	const struct gl *gl = engine_gl(engine);
-	bool ordered = engine->mesh.ordered;
-	if (!use(engine, ordered && engine->tears ? VARIANT_TEAR : 0, error))
+	const struct warp_mesh *mesh = &engine->mesh;
+	target_draw_to(&engine->shown, gl);
+	if (mesh->plain.count && !use(engine, 0, error))
 		return -EIO;
-	if (ordered) {
-		warp_mesh_draw_ordered(&engine->mesh, gl);
-		return 0;
-	}
-	warp_mesh_draw_whole(&engine->mesh, gl);
-	if (engine->tears && !use(engine, VARIANT_TEAR, error))
+	warp_mesh_draw(mesh, gl, mesh->plain);
+	if (mesh->torn.count && !use(engine, VARIANT_TEAR, error))
 		return -EIO;
-	warp_mesh_draw_torn(&engine->mesh, gl);
-	return 0;
+	warp_mesh_draw(mesh, gl, mesh->torn);
+	return mesh->folded.count || mesh->folded_torn.count ? draw_folded(engine, error) : 0;
 }
 
 static int run(struct engine *engine, struct error *error)
 {
 	const struct gl *gl = engine_gl(engine);
-	int result = open_target(engine, engine->plan.folded > 0 || engine->job.phase > engine->last_phase ||
-	                         engine->job.phase < 0.0, error);
+	int result = target_resize(&engine->shown, gl, engine->color.width, engine->color.height, error);
+	if (result == 0 && engine->mesh.folds.count)
+		result = make_depth(engine, error);
 	if (result < 0)
 		return result;
-	if (engine->tears) {
-		gl->ActiveTexture(GL_TEXTURE0 + UNIT_LEVEL);
-		gl->BindTexture(GL_TEXTURE_2D, engine->levels[engine->params.blur_level - 1].texture);
-	}
-	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
-	gl->BindTexture(GL_TEXTURE_2D, engine->job.picture->texture);
+	bind_textures(engine);
+	gl->Enable(GL_CULL_FACE);
 	result = draw(engine, error);
 	gl->Disable(GL_CULL_FACE);
-	gl->Disable(GL_DEPTH_TEST);
 	return result;
 }
 

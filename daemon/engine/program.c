@@ -12,7 +12,8 @@
 static const struct {
 	const char *name, *vertex, *fragment;
 } sources[PROGRAM_KIND_COUNT] = {
-	[PROGRAM_PYRAMID] = { "pyramid", shader_rectangle_vert, shader_pyramid_frag },
+	[PROGRAM_PYRAMID] = { "pyramid", shader_tiles_vert, shader_pyramid_frag },
+	[PROGRAM_LOW] = { "low", shader_tiles_vert, shader_low_frag },
 	[PROGRAM_COMPENSATE] = { "compensate", shader_grid_vert, shader_compensate_frag },
 	[PROGRAM_WARP] = { "warp", shader_grid_vert, shader_warp_frag },
 	[PROGRAM_UI] = { "ui", shader_rectangle_vert, shader_ui_frag },
@@ -99,7 +100,7 @@ const struct program *program_use(struct program_cache *cache, const struct gl *
 			return NULL;
 		gl->UseProgram(program->id);
 		gl->Uniform1i(gl->GetUniformLocation(program->id, "u_picture"), UNIT_PICTURE);
-		gl->Uniform1i(gl->GetUniformLocation(program->id, "u_level"), UNIT_LEVEL);
+		gl->Uniform1i(gl->GetUniformLocation(program->id, "u_low"), UNIT_LOW);
 #define X(name) program->name = gl->GetUniformLocation(program->id, "u_" #name);
 		PROGRAM_UNIFORMS(X)
 #undef X

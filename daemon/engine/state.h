@@ -61,6 +61,10 @@ struct engine {
 	struct target color;              /* the original */
 	struct target real, between;      /* E and B, valid if `compensated` */
 	struct target levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
+	struct target low;                /* L, where it was asked for */
+	GLuint tile_array, tile_vertices; /* rectangles to fill */
+	float *tile_numbers;              /* on their way there */
+	size_t tile_capacity;
 	struct target shown;              /* the displayed frame, if it is not one of the above */
 	GLuint both_framebuffer;          /* `real` and `between` at once */
 	GLuint no_attributes;             /* a vertex array with nothing in it */
@@ -75,10 +79,10 @@ struct engine {
 	double last_phase;
 	uint64_t real_interval_ns; /* as the pacer knows it; 0: as the frame says */
 	bool moves;       /* there is a plan with vertices */
-	bool has_depth;   /* a depth plane tells near from far */
+	bool has_depth;   /* depths differ, so that they settle what lies before what */
 	bool compensated; /* E and B differ from the original */
-	bool tears;       /* some triangle may tear */
-	bool has_levels;  /* the pyramid is made */
+	enum { LEVELS_NONE = 0, LEVELS_MARKED, LEVELS_ALL } levels_made;
+	bool levels_everywhere; /* the next pyramid must cover all, not only the marked tiles */
 	double boost;     /* k */
 };
 

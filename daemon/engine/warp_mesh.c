@@ -4,10 +4,29 @@
 #include "daemon/engine/warp_mesh.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "shaders/limits.h"
+
+/* Below this squared norm of phase x gradient no triangle turns over or is stretched by more than 1.25. */
+#define TAME 0.0625f
+/* A triangle that shrinks to less than this share of its area may be turned over by rounding. */
+#define NEARLY_FLAT 0.01f
+
+/* Pixels a side: of L; of the pyramid, a multiple of its coarsest texel; of the displaced picture. */
+#define LOW_TILE 16u
+#define LEVELS_TILE 64u
+#define FOLD_TILE 32u
+
+enum kind {
+	KIND_PLAIN = 0,
+	KIND_TORN = 1,
+	KIND_FOLDED = 2, /* or-ed with torn */
+	KIND_HIDDEN = 4, /* turned over */
+};
 
 /* A triangle's map from source to displaced coordinates. */
 struct map {
@@ -15,15 +34,25 @@ struct map {
 	float determinant; /* their product, negative if it turns over */
 };
 
-static struct map triangle_map(const struct plan_vertex *vertices, const uint32_t *index, float phase)
+/* The displacement's gradient within a triangle. */
+struct gradient {
+	float xx, xy, yx, yy;
+};
+
+static struct gradient triangle_gradient(const struct plan_vertex *vertices, const uint32_t *index)
 {
 	const struct plan_vertex *a = &vertices[index[0]], *b = &vertices[index[1]], *c = &vertices[index[2]];
 	float bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y;
-	float bu = bx + phase * (b->ux - a->ux), bv = by + phase * (b->uy - a->uy);
-	float cu = cx + phase * (c->ux - a->ux), cv = cy + phase * (c->uy - a->uy);
+	float bu = b->ux - a->ux, bv = b->uy - a->uy, cu = c->ux - a->ux, cv = c->uy - a->uy;
 	float scale = 1.0f / (bx * cy - cx * by);
-	float xx = (bu * cy - cu * by) * scale, xy = (cu * bx - bu * cx) * scale;
-	float yx = (bv * cy - cv * by) * scale, yy = (cv * bx - bv * cx) * scale;
+	return (struct gradient){ (bu * cy - cu * by) * scale, (cu * bx - bu * cx) * scale, (bv * cy - cv * by) * scale,
+		                      (cv * bx - bv * cx) * scale };
+}
+
+static struct map triangle_map(const struct plan_vertex *vertices, const uint32_t *index, float phase)
+{
+	struct gradient g = triangle_gradient(vertices, index);
+	float xx = 1.0f + phase * g.xx, xy = phase * g.xy, yx = phase * g.yx, yy = 1.0f + phase * g.yy;
 	return (struct map){ xx * xx + xy * xy + yx * yx + yy * yy, xx * yy - xy * yx };
 }
 
@@ -36,75 +65,42 @@ static bool stretches(struct map map, float limit)
 	return !below;
 }
 
-bool warp_mesh_tears(const struct plan *plan, float phase)
+static struct box triangle_box(const struct plan_vertex *vertices, const uint32_t *index, float phase, float margin)
 {
-	for (uint32_t i = 0; i < plan->index_count; i += 3)
-		if (stretches(triangle_map(plan->vertices, plan->indices + i, phase), 1.0f + (float)TEAR_FROM))
-			return true;
-	return false;
+	struct box box = { INFINITY, INFINITY, -INFINITY, -INFINITY };
+	for (int i = 0; i < 3; i++) {
+		const struct plan_vertex *vertex = &vertices[index[i]];
+		float x = vertex->x + phase * vertex->ux, y = vertex->y + phase * vertex->uy;
+		box.left = fminf(box.left, x - margin);
+		box.right = fmaxf(box.right, x + margin);
+		box.top = fminf(box.top, y - margin);
+		box.bottom = fmaxf(box.bottom, y + margin);
+	}
+	return box;
+}
+
+static struct box box_grown(struct box box, float margin)
+{
+	return (struct box){ box.left - margin, box.top - margin, box.right + margin, box.bottom + margin };
 }
 
 static bool reserve(struct warp_mesh *mesh, uint32_t count)
 {
 	if (count <= mesh->capacity)
 		return true;
-	uint32_t *lists = realloc(mesh->lists, (size_t)count * sizeof(*lists));
-	if (!lists)
+	mesh->capacity = 0;
+	free(mesh->triangles);
+	free(mesh->lists);
+	free(mesh->wildness);
+	free(mesh->kinds);
+	mesh->triangles = malloc((size_t)count * sizeof(*mesh->triangles));
+	mesh->lists = malloc(2 * (size_t)count * sizeof(*mesh->lists));
+	mesh->wildness = malloc((size_t)count / 3 * sizeof(*mesh->wildness));
+	mesh->kinds = malloc((size_t)count / 3);
+	if (!mesh->triangles || !mesh->lists || !mesh->wildness || !mesh->kinds)
 		return false;
-	mesh->lists = lists;
 	mesh->capacity = count;
 	return true;
-}
-
-static void put(uint32_t *list, uint32_t *count, const uint32_t *index)
-{
-	for (int i = 0; i < 3; i++)
-		list[(*count)++] = index[i];
-}
-
-/* Three lists, each with room for all triangles. */
-static void sort_triangles(struct warp_mesh *mesh, const struct plan *plan)
-{
-	uint32_t total = plan->index_count;
-	uint32_t *whole = mesh->lists, *torn = mesh->lists + total, *doubtful = mesh->lists + 2 * (size_t)total;
-	mesh->whole_count = mesh->torn_count = mesh->doubtful_count = 0;
-	for (uint32_t i = 0; i < total; i += 3) {
-		const uint32_t *index = plan->indices + i;
-		struct map map = triangle_map(plan->vertices, index, plan->last_phase);
-		if (stretches(map, 1.0f + (float)TEAR_FROM))
-			put(torn, &mesh->torn_count, index);
-		else
-			put(whole, &mesh->whole_count, index);
-		if (map.determinant > 0.0f && stretches(map, 1.0f + (float)BLUR_FROM))
-			put(doubtful, &mesh->doubtful_count, index);
-	}
-	mesh->ordered_count = total;
-}
-
-static void upload_indices(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, bool ordered)
-{
-	size_t total = plan->index_count;
-	struct part {
-		const uint32_t *list;
-		uint32_t count, *first;
-	} parts[] = {
-		{ mesh->lists, ordered ? 0 : mesh->whole_count, &mesh->whole_first },
-		{ mesh->lists + total, ordered ? 0 : mesh->torn_count, &mesh->torn_first },
-		{ mesh->lists + 2 * total, mesh->doubtful_count, &mesh->doubtful_first },
-		{ plan->indices, ordered ? mesh->ordered_count : 0, &mesh->ordered_first },
-	};
-	size_t sum = 0;
-	for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++)
-		sum += parts[i].count;
-	gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(sum * sizeof(uint32_t)), NULL, GL_STREAM_DRAW);
-	size_t first = 0;
-	for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
-		gl->BufferSubData(GL_ELEMENT_ARRAY_BUFFER, (GLintptr)(first * sizeof(uint32_t)),
-		                  (GLsizeiptr)(parts[i].count * sizeof(uint32_t)), parts[i].list);
-		*parts[i].first = (uint32_t)first;
-		first += parts[i].count;
-	}
-	mesh->bytes = sum * sizeof(uint32_t);
 }
 
 static void make_buffers(struct warp_mesh *mesh, const struct gl *gl)
@@ -127,20 +123,134 @@ static void make_buffers(struct warp_mesh *mesh, const struct gl *gl)
 	gl->EnableVertexAttribArray(ATTRIBUTE_DEPTH);
 }
 
-int warp_mesh_upload(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, bool ordered, struct error *error)
+static void measure_triangles(struct warp_mesh *mesh)
 {
-	if (!reserve(mesh, 3 * plan->index_count))
+	for (uint32_t i = 0; i < mesh->count; i += 3) {
+		struct gradient g = triangle_gradient(mesh->plan->vertices, mesh->triangles + i);
+		mesh->wildness[i / 3] = g.xx * g.xx + g.xy * g.xy + g.yx * g.yx + g.yy * g.yy;
+	}
+}
+
+int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, float tolerance,
+                    struct error *error)
+{
+	mesh->plan = plan;
+	if (!reserve(mesh, plan->index_count))
 		return error_set(error, -ENOMEM, "out of memory for %u triangles", plan->index_count / 3);
-	sort_triangles(mesh, plan);
-	mesh->ordered = ordered;
+	mesh->count = plan->index_count;
+	if (tolerance >= 0.0f)
+		mesh->count = merge_triangles(&mesh->merge, plan, tolerance, mesh->triangles);
+	else
+		memcpy(mesh->triangles, plan->indices, plan->index_count * sizeof(*plan->indices));
+	if (!mesh->count)
+		return error_set(error, -ENOMEM, "out of memory for %u cells", plan->index_count / 6);
+	measure_triangles(mesh);
 	if (!mesh->array)
 		make_buffers(mesh, gl);
-	gl->BindVertexArray(mesh->array);
-	gl->BindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
 	GLsizeiptr size = (GLsizeiptr)((size_t)plan->columns * plan->rows * sizeof(*plan->vertices));
+	gl->BindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
 	gl->BufferData(GL_ARRAY_BUFFER, size, plan->vertices, GL_STREAM_DRAW);
-	upload_indices(mesh, gl, plan, ordered);
+	mesh->bytes = (uint64_t)size;
+	return 0;
+}
+
+/* Appends the triangles of some kinds to the lists. */
+static struct warp_list collect(struct warp_mesh *mesh, uint32_t first, unsigned mask, unsigned kind)
+{
+	struct warp_list list = { first, 0 };
+	uint32_t *to = mesh->lists + first;
+	for (uint32_t i = 0; i < mesh->count; i += 3)
+		if ((mesh->kinds[i / 3] & mask) == kind) {
+			memcpy(to + list.count, mesh->triangles + i, 3 * sizeof(*to));
+			list.count += 3;
+		}
+	return list;
+}
+
+static void send(struct warp_mesh *mesh, const struct gl *gl, uint32_t count)
+{
+	GLsizeiptr size = (GLsizeiptr)((size_t)count * sizeof(uint32_t));
+	gl->BindVertexArray(mesh->array);
+	gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, size, mesh->lists, GL_STREAM_DRAW);
 	mesh->bytes += (uint64_t)size;
+}
+
+int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_t level, struct error *error)
+{
+	const struct plan *plan = mesh->plan;
+	float phase = plan->last_phase;
+	if (!tiles_begin(&mesh->low, plan->width, plan->height, LOW_TILE) ||
+	    !tiles_begin(&mesh->levels, plan->width, plan->height, LEVELS_TILE))
+		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
+	for (uint32_t i = 0; i < mesh->count; i += 3) {
+		mesh->kinds[i / 3] = KIND_PLAIN;
+		if (mesh->wildness[i / 3] * phase * phase < TAME)
+			continue;
+		struct map map = triangle_map(plan->vertices, mesh->triangles + i, phase);
+		if (!stretches(map, 1.0f + (float)BLUR_FROM))
+			continue;
+		/* Bilinear sampling reaches a pixel further; the spline 3 texels, the levels below it less than one more. */
+		struct box box = triangle_box(plan->vertices, mesh->triangles + i, 0.0f, 1.0f);
+		tiles_mark(&mesh->low, box);
+		tiles_mark(&mesh->levels, box_grown(box, (float)(LOW_TILE + (4u << level))));
+		mesh->kinds[i / 3] = map.determinant > 0.0f ? KIND_TORN : KIND_HIDDEN;
+	}
+	mesh->doubtful = collect(mesh, 0, KIND_TORN | KIND_HIDDEN, KIND_TORN);
+	send(mesh, gl, mesh->doubtful.count);
+	return 0;
+}
+
+/* What each triangle is by itself; marks where some turn over. */
+static void find_kinds(struct warp_mesh *mesh, float phase, bool tears)
+{
+	const struct plan_vertex *vertices = mesh->plan->vertices;
+	for (uint32_t i = 0; i < mesh->count; i += 3) {
+		mesh->kinds[i / 3] = KIND_PLAIN;
+		if (mesh->wildness[i / 3] * phase * phase < TAME)
+			continue;
+		struct map map = triangle_map(vertices, mesh->triangles + i, phase);
+		if (tears && stretches(map, 1.0f + (float)TEAR_FROM))
+			mesh->kinds[i / 3] = KIND_TORN;
+		if (!(map.determinant > NEARLY_FLAT))
+			tiles_mark(&mesh->folds, triangle_box(vertices, mesh->triangles + i, phase, 1.0f));
+		if (map.determinant < -NEARLY_FLAT)
+			mesh->kinds[i / 3] = KIND_HIDDEN;
+	}
+}
+
+static void find_folds(struct warp_mesh *mesh, float phase)
+{
+	for (uint32_t i = 0; i < mesh->count; i += 3) {
+		uint8_t *kind = &mesh->kinds[i / 3];
+		struct box box = triangle_box(mesh->plan->vertices, mesh->triangles + i, phase, 0.0f);
+		if (*kind == KIND_HIDDEN || !tiles_touch(&mesh->folds, box))
+			continue;
+		*kind |= KIND_FOLDED;
+	}
+}
+
+static uint32_t end_of(struct warp_list list)
+{
+	return list.first + list.count;
+}
+
+int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, bool tears, bool keep_order,
+                   struct error *error)
+{
+	const struct plan *plan = mesh->plan;
+	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE))
+		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
+	find_kinds(mesh, phase, tears);
+	if (mesh->folds.count)
+		find_folds(mesh, phase);
+	const unsigned all = KIND_TORN | KIND_FOLDED | KIND_HIDDEN;
+	mesh->keep_order = keep_order;
+	mesh->plain = collect(mesh, 0, all, KIND_PLAIN);
+	mesh->torn = collect(mesh, end_of(mesh->plain), all, KIND_TORN);
+	mesh->folded = collect(mesh, end_of(mesh->torn), keep_order ? KIND_FOLDED : all, KIND_FOLDED);
+	/* With the order kept these come twice: once in their place, once only to be counted. */
+	mesh->folded_torn = collect(mesh, end_of(mesh->folded), all, KIND_FOLDED | KIND_TORN);
+	send(mesh, gl, end_of(mesh->folded_torn));
 	return 0;
 }
 
@@ -149,34 +259,22 @@ void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl)
 	gl->DeleteVertexArrays(1, &mesh->array);
 	gl->DeleteBuffers(1, &mesh->vertices);
 	gl->DeleteBuffers(1, &mesh->indices);
+	merge_finish(&mesh->merge);
+	tiles_finish(&mesh->folds);
+	tiles_finish(&mesh->low);
+	tiles_finish(&mesh->levels);
+	free(mesh->triangles);
 	free(mesh->lists);
+	free(mesh->wildness);
+	free(mesh->kinds);
 	*mesh = (struct warp_mesh){ 0 };
 }
 
-static void draw(const struct warp_mesh *mesh, const struct gl *gl, uint32_t first, uint32_t count)
+void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct warp_list list)
 {
-	if (!count)
+	if (!list.count)
 		return;
 	gl->BindVertexArray(mesh->array);
-	gl->DrawElements(GL_TRIANGLES, (GLsizei)count, GL_UNSIGNED_INT, (const void *)((size_t)first * sizeof(uint32_t)));
-}
-
-void warp_mesh_draw_whole(const struct warp_mesh *mesh, const struct gl *gl)
-{
-	draw(mesh, gl, mesh->whole_first, mesh->whole_count);
-}
-
-void warp_mesh_draw_torn(const struct warp_mesh *mesh, const struct gl *gl)
-{
-	draw(mesh, gl, mesh->torn_first, mesh->torn_count);
-}
-
-void warp_mesh_draw_ordered(const struct warp_mesh *mesh, const struct gl *gl)
-{
-	draw(mesh, gl, mesh->ordered_first, mesh->ordered_count);
-}
-
-void warp_mesh_draw_doubtful(const struct warp_mesh *mesh, const struct gl *gl)
-{
-	draw(mesh, gl, mesh->doubtful_first, mesh->doubtful_count);
+	gl->DrawElements(GL_TRIANGLES, (GLsizei)list.count, GL_UNSIGNED_INT,
+	                 (const void *)((size_t)list.first * sizeof(uint32_t)));
 }

@@ -2,7 +2,9 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * The plan's grid as GL buffers: its vertices and three lists of triangles.
+ * The plan's grid as GL buffers, and which of its triangles need what at a
+ * phase. Triangles of a displaced grid whose border is fixed lie over each other
+ * only where others turn over, so that depth and drawing order matter only there.
  * Buffers are orphaned and refilled, memory grows and stays.
  */
 #ifndef PURSUIT_ENGINE_WARP_MESH_H
@@ -12,32 +14,60 @@
 #include <stdint.h>
 
 #include "daemon/engine/gl.h"
+#include "daemon/engine/merge.h"
 #include "daemon/engine/plan.h"
+#include "daemon/engine/tiles.h"
 #include "daemon/error.h"
+
+/* Part of the index buffer; indices, not triangles. */
+struct warp_list {
+	uint32_t first, count;
+};
 
 struct warp_mesh {
 	GLuint array, vertices, indices;
-	/* Ranges of the index buffer; indices, not triangles. */
-	uint32_t whole_first, whole_count;       /* never torn between phases 0 and last_phase */
-	uint32_t torn_first, torn_count;         /* possibly torn there */
-	uint32_t doubtful_first, doubtful_count; /* with a blur weight */
-	uint32_t ordered_first, ordered_count;   /* all of them, in drawing order; there only if `ordered` */
-	bool ordered;                            /* then whole and torn ones are not in the buffer */
-	uint64_t bytes;                          /* sent by the last upload */
-	uint32_t *lists;                         /* whole, torn and doubtful on the CPU */
-	uint32_t capacity;
+	const struct plan *plan;
+	struct merge merge;
+	struct tiles folds;  /* at the phase sorted for, where triangles may lie over each other */
+	struct tiles low;     /* of the source, where L is needed up to the last phase */
+	struct tiles levels;  /* and where the pyramid under it is */
+	uint32_t *triangles;  /* merged, 3 indices each */
+	uint32_t count;       /* indices of them */
+	float *wildness;      /* by triangle: squared norm of the displacement's gradient */
+	uint8_t *kinds;       /* by triangle: what it needs at the phase sorted for */
+	uint32_t *lists;      /* on their way to the index buffer */
+	uint32_t capacity;    /* indices */
+	/* What warp_mesh_sort() and warp_mesh_sort_doubtful() found; the index buffer holds one or the other. */
+	struct warp_list plain;  /* neither torn nor over each other */
+	struct warp_list torn;   /* torn, not over each other */
+	struct warp_list folded; /* perhaps over each other, in drawing order */
+	struct warp_list folded_torn; /* these among them that are torn; if `keep_order` they are in `folded` too */
+	bool keep_order;
+	struct warp_list doubtful;
+	uint64_t bytes; /* sent since warp_mesh_begin() */
 };
 
-/* Sorts the triangles and fills the buffers. 0 or -ENOMEM with a sentence. */
-int warp_mesh_upload(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, bool ordered, struct error *error);
-/* Whether any triangle is stretched so far at a phase that it tears. */
-bool warp_mesh_tears(const struct plan *plan, float phase);
+/*
+ * Takes the plan, which must stay until the next one, and sends its vertices. `tolerance`: pixels that a vertex may be
+ * off for cells to be merged; negative: none are. 0 or -ENOMEM with a sentence.
+ */
+int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, float tolerance,
+                    struct error *error);
 void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl);
 
-/* Draws a list that was uploaded: what part of the picture it covers is the caller's business. */
-void warp_mesh_draw_whole(const struct warp_mesh *mesh, const struct gl *gl);
-void warp_mesh_draw_torn(const struct warp_mesh *mesh, const struct gl *gl);
-void warp_mesh_draw_ordered(const struct warp_mesh *mesh, const struct gl *gl);
-void warp_mesh_draw_doubtful(const struct warp_mesh *mesh, const struct gl *gl);
+/*
+ * Fills `doubtful`: triangles with a blur weight, and marks in `low` and `levels` what they and torn ones need up to
+ * the last phase; the spline over `level` reaches far. 0 or -ENOMEM with a sentence.
+ */
+int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_t level, struct error *error);
+
+/*
+ * Fills the lists for a phase; without `tears` none is torn. `keep_order`: depths may be equal, so that what lies over
+ * each other is drawn as one list. 0 or -ENOMEM with a sentence.
+ */
+int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, bool tears, bool keep_order,
+                   struct error *error);
+
+void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct warp_list list);
 
 #endif

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/merge.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define LARGEST 8u
+/* Pixels by which cells may differ in size, and depth that a vertex may be off: both far below what shows. */
+#define POSITION_TOLERANCE 1e-3f
+#define DEPTH_TOLERANCE 2e-4f
+
+/* A block's corners and the way it is split. */
+struct block {
+	const struct plan_vertex *v00, *v10, *v01, *v11;
+	bool falling; /* along v00 v11 */
+};
+
+struct tolerance {
+	float displacement, depth;
+};
+
+static struct block block_at(const struct plan *plan, const struct merge_leaf *leaf)
+{
+	const struct plan_vertex *top = plan->vertices + (size_t)leaf->row * plan->columns + leaf->column;
+	const struct plan_vertex *bottom = top + (size_t)leaf->size * plan->columns;
+	struct block block = { top, top + leaf->size, bottom, bottom + leaf->size, false };
+	float fx = block.v00->ux - block.v11->ux, fy = block.v00->uy - block.v11->uy;
+	float rx = block.v10->ux - block.v01->ux, ry = block.v10->uy - block.v01->uy;
+	/* The rule of the plan: the diagonal whose ends move more alike. */
+	block.falling = fx * fx + fy * fy <= rx * rx + ry * ry;
+	return block;
+}
+
+/* Whether the two triangles pass by a vertex at (s, t) within the block, each 0 to 1. */
+static bool passes_by(const struct block *block, const struct plan_vertex *vertex, float s, float t,
+                      const struct tolerance *tolerance)
+{
+	float w00, w10, w01, w11;
+	if (block->falling) {
+		w00 = 1.0f - fmaxf(s, t);
+		w11 = fminf(s, t);
+		w10 = fmaxf(s - t, 0.0f);
+		w01 = fmaxf(t - s, 0.0f);
+	} else {
+		w00 = fmaxf(1.0f - s - t, 0.0f);
+		w11 = fmaxf(s + t - 1.0f, 0.0f);
+		w10 = s - w11;
+		w01 = t - w11;
+	}
+	const struct plan_vertex *a = block->v00, *b = block->v10, *c = block->v01, *d = block->v11;
+	float x = w00 * a->x + w10 * b->x + w01 * c->x + w11 * d->x - vertex->x;
+	float y = w00 * a->y + w10 * b->y + w01 * c->y + w11 * d->y - vertex->y;
+	float ux = w00 * a->ux + w10 * b->ux + w01 * c->ux + w11 * d->ux - vertex->ux;
+	float uy = w00 * a->uy + w10 * b->uy + w01 * c->uy + w11 * d->uy - vertex->uy;
+	float z = w00 * a->z + w10 * b->z + w01 * c->z + w11 * d->z - vertex->z;
+	return fmaxf(fabsf(x), fabsf(y)) <= POSITION_TOLERANCE && fmaxf(fabsf(ux), fabsf(uy)) <= tolerance->displacement &&
+	       fabsf(z) <= tolerance->depth;
+}
+
+static bool is_flat(const struct plan *plan, const struct merge_leaf *leaf, const struct tolerance *tolerance)
+{
+	struct block block = block_at(plan, leaf);
+	float step = 1.0f / (float)leaf->size;
+	for (uint32_t j = 0; j <= leaf->size; j++)
+		for (uint32_t i = 0; i <= leaf->size; i++) {
+			const struct plan_vertex *vertex = block.v00 + (size_t)j * plan->columns + i;
+			if (vertex->snapped != 0.0f || !passes_by(&block, vertex, (float)i * step, (float)j * step, tolerance))
+				return false;
+		}
+	return true;
+}
+
+static void add_leaf(struct merge *merge, const struct plan *plan, const struct merge_leaf *leaf)
+{
+	uint8_t *top = merge->used + (size_t)leaf->row * plan->columns + leaf->column;
+	uint8_t *bottom = top + (size_t)leaf->size * plan->columns;
+	top[0] = top[leaf->size] = bottom[0] = bottom[leaf->size] = 1;
+	merge->leaves[merge->leaf_count++] = *leaf;
+}
+
+static void divide(struct merge *merge, const struct plan *plan, struct merge_leaf leaf,
+                   const struct tolerance *tolerance)
+{
+	uint32_t columns = plan->columns - 1, rows = plan->rows - 1;
+	if (leaf.column >= columns || leaf.row >= rows)
+		return;
+	bool inside = leaf.column + leaf.size <= columns && leaf.row + leaf.size <= rows;
+	if (leaf.size == 1 || (inside && is_flat(plan, &leaf, tolerance))) {
+		add_leaf(merge, plan, &leaf);
+		return;
+	}
+	uint32_t half = leaf.size / 2;
+	for (uint32_t i = 0; i < 4; i++)
+		divide(merge, plan, (struct merge_leaf){ leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half },
+		       tolerance);
+}
+
+static bool reserve(struct merge *merge, const struct plan *plan)
+{
+	uint32_t vertices = plan->columns * plan->rows;
+	if (vertices > merge->capacity) {
+		merge_finish(merge);
+		merge->used = malloc(vertices);
+		merge->leaves = malloc(vertices * sizeof(*merge->leaves));
+		if (!merge->used || !merge->leaves)
+			return false;
+		merge->capacity = vertices;
+	}
+	memset(merge->used, 0, vertices);
+	merge->leaf_count = 0;
+	return true;
+}
+
+/* The used vertices around a leaf, from its first corner on, turning the positive way. */
+static uint32_t walk_around(const struct merge *merge, const struct plan *plan, const struct merge_leaf *leaf,
+                            uint32_t around[4 * LARGEST])
+{
+	uint32_t at = leaf->row * plan->columns + leaf->column, count = 0;
+	const uint32_t steps[4] = { 1, plan->columns, UINT32_MAX, 0u - plan->columns };
+	for (int side = 0; side < 4; side++)
+		for (uint32_t i = 0; i < leaf->size; i++, at += steps[side])
+			if (merge->used[at])
+				around[count++] = at;
+	return count;
+}
+
+static uint32_t put(uint32_t *indices, uint32_t a, uint32_t b, uint32_t c)
+{
+	indices[0] = a;
+	indices[1] = b;
+	indices[2] = c;
+	return 3;
+}
+
+static uint32_t emit(const struct merge *merge, const struct plan *plan, const struct merge_leaf *leaf,
+                     uint32_t *indices)
+{
+	if (leaf->size == 1) {
+		memcpy(indices, plan->indices + 6 * ((size_t)leaf->row * (plan->columns - 1) + leaf->column),
+		       6 * sizeof(*indices));
+		return 6;
+	}
+	uint32_t around[4 * LARGEST], used = 0, count = walk_around(merge, plan, leaf, around);
+	if (count == 4) {
+		/* around: v00 v10 v11 v01 */
+		bool falling = block_at(plan, leaf).falling;
+		used = put(indices, around[0], around[1], around[falling ? 2 : 3]);
+		return used + put(indices + used, around[falling ? 0 : 1], around[2], around[3]);
+	}
+	uint32_t middle = (leaf->row + leaf->size / 2) * plan->columns + leaf->column + leaf->size / 2;
+	for (uint32_t i = 0; i < count; i++)
+		used += put(indices + used, middle, around[i], around[(i + 1) % count]);
+	return used;
+}
+
+uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float displacement_tolerance, uint32_t *indices)
+{
+	/* Depth matters only where triangles lie over each other. */
+	const struct tolerance tolerance = { displacement_tolerance, plan->folded ? DEPTH_TOLERANCE : INFINITY };
+	if (!reserve(merge, plan))
+		return 0;
+	/* The outermost row and column of cells are halves; blocks begin at the first whole cell. */
+	for (uint32_t i = 0; i + 1 < plan->columns; i++)
+		add_leaf(merge, plan, &(struct merge_leaf){ i, 0, 1 });
+	for (uint32_t row = 1; row + 1 < plan->rows; row += LARGEST) {
+		for (uint32_t i = row; i < row + LARGEST && i + 1 < plan->rows; i++)
+			add_leaf(merge, plan, &(struct merge_leaf){ 0, i, 1 });
+		for (uint32_t column = 1; column + 1 < plan->columns; column += LARGEST)
+			divide(merge, plan, (struct merge_leaf){ column, row, LARGEST }, &tolerance);
+	}
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < merge->leaf_count; i++)
+		count += emit(merge, plan, &merge->leaves[i], indices + count);
+	return count;
+}
+
+void merge_finish(struct merge *merge)
+{
+	free(merge->used);
+	free(merge->leaves);
+	*merge = (struct merge){ 0 };
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/tiles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile)
+{
+	uint32_t columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+	if (columns * rows > tiles->capacity) {
+		tiles_finish(tiles);
+		tiles->marked = malloc((size_t)columns * rows);
+		if (!tiles->marked)
+			return false;
+		tiles->capacity = columns * rows;
+	}
+	tiles->width = width;
+	tiles->height = height;
+	tiles->tile = tile;
+	tiles->columns = columns;
+	tiles->rows = rows;
+	tiles->count = 0;
+	memset(tiles->marked, 0, (size_t)columns * rows);
+	return true;
+}
+
+void tiles_finish(struct tiles *tiles)
+{
+	free(tiles->marked);
+	*tiles = (struct tiles){ 0 };
+}
+
+struct range {
+	uint32_t first, end;
+};
+
+/* The tiles that an interval meets along one axis, its ends included. */
+static struct range meet(float from, float to, uint32_t size, uint32_t count, uint32_t tile)
+{
+	if (!(to >= 0.0f) || !(from <= (float)size))
+		return (struct range){ 0, 0 };
+	uint32_t first = from > 0.0f ? (uint32_t)from / tile : 0;
+	uint32_t last = to < (float)size ? (uint32_t)to / tile : count - 1;
+	return (struct range){ first < count ? first : count - 1, (last < count ? last : count - 1) + 1 };
+}
+
+void tiles_mark(struct tiles *tiles, struct box box)
+{
+	struct range x = meet(box.left, box.right, tiles->width, tiles->columns, tiles->tile);
+	struct range y = meet(box.top, box.bottom, tiles->height, tiles->rows, tiles->tile);
+	for (uint32_t j = y.first; j < y.end; j++)
+		for (uint32_t i = x.first; i < x.end; i++) {
+			uint8_t *tile = &tiles->marked[j * tiles->columns + i];
+			tiles->count += !*tile;
+			*tile = 1;
+		}
+}
+
+bool tiles_touch(const struct tiles *tiles, struct box box)
+{
+	struct range x = meet(box.left, box.right, tiles->width, tiles->columns, tiles->tile);
+	struct range y = meet(box.top, box.bottom, tiles->height, tiles->rows, tiles->tile);
+	for (uint32_t j = y.first; j < y.end; j++)
+		for (uint32_t i = x.first; i < x.end; i++)
+			if (tiles->marked[j * tiles->columns + i])
+				return true;
+	return false;
+}
+
+void tiles_mark_all(struct tiles *tiles)
+{
+	tiles->count = tiles->columns * tiles->rows;
+	memset(tiles->marked, 1, tiles->count);
+}
+
+size_t tiles_most_numbers(const struct tiles *tiles)
+{
+	return 12 * (size_t)tiles->rows * ((tiles->columns + 1) / 2);
+}
+
+static float *write_rectangle(float *numbers, float left, float top, float right, float bottom)
+{
+	const float corners[12] = { left, top, right, top, left, bottom, left, bottom, right, top, right, bottom };
+	memcpy(numbers, corners, sizeof(corners));
+	return numbers + 12;
+}
+
+size_t tiles_write(const struct tiles *tiles, float *numbers)
+{
+	float *at = numbers, tile = (float)tiles->tile;
+	for (uint32_t j = 0; j < tiles->rows; j++)
+		for (uint32_t i = 0; i < tiles->columns; i++) {
+			const uint8_t *row = tiles->marked + j * tiles->columns;
+			if (!row[i])
+				continue;
+			uint32_t first = i;
+			while (i + 1 < tiles->columns && row[i + 1])
+				i++;
+			at = write_rectangle(at, tile * (float)first, tile * (float)j, tile * (float)(i + 1), tile * (float)(j + 1));
+		}
+	return (size_t)(at - numbers);
+}
