@@ -139,7 +139,8 @@ static void adopt_streams(struct output *output, struct stream *const *streams, 
 	struct stream *old[OUTPUT_STREAMS];
 	const uint32_t old_count = output->own_count;
 	memcpy(old, output->own, sizeof(old));
-	memcpy(output->own, streams, count * sizeof(streams[0]));
+	for (uint32_t i = 0; i < count; i++)
+		output->own[i] = streams[i];
 	output->own_count = count;
 	render_set_stream(&output->render, count ? streams[count - 1] : NULL);
 	for (uint32_t i = 0; i < old_count; i++)

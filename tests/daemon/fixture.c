@@ -64,6 +64,7 @@ void fixture_spawn(struct fixture *fixture, const char *const *arguments)
 		return;
 	const int log = open(fixture->log, O_WRONLY | O_CREAT | O_APPEND, 0600);
 	dup2(log, STDERR_FILENO);
+	setenv("UBSAN_OPTIONS", "halt_on_error=1:print_stacktrace=1", 0); /* of builds with -Db_sanitize */
 	execv(fixture->program, (char *const *)(uintptr_t)argv);
 	perror(fixture->program);
 	_exit(127);
