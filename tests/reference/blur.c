@@ -74,6 +74,16 @@ void reference_low(struct reference_picture *out, const struct reference_picture
 	reference_picture_finish(&now);
 }
 
+double reference_weight_of(double stretch)
+{
+	return reference_smoothstep(0.25, 1.0, stretch - 1.0);
+}
+
+double reference_tear_of(double stretch)
+{
+	return reference_smoothstep(1.0, 2.0, stretch - 1.0);
+}
+
 double reference_weight(const struct reference_grid *grid, const uint32_t v[3], double last_phase,
 						enum engine_blur blur)
 {
@@ -85,7 +95,7 @@ double reference_weight(const struct reference_grid *grid, const uint32_t v[3], 
 	if (!(reference_area2(grid, v, last_phase) > 0.0))
 		return 0.0;
 	reference_singular(grid, v, last_phase, sigma);
-	return reference_smoothstep(0.25, 1.0, sigma[0] - 1.0);
+	return reference_weight_of(sigma[0]);
 }
 
 double reference_tear(const struct reference_grid *grid, const uint32_t v[3], double phase, enum engine_blur blur)
@@ -94,7 +104,7 @@ double reference_tear(const struct reference_grid *grid, const uint32_t v[3], do
 	if (blur == ENGINE_BLUR_OFF)
 		return 0.0;
 	reference_singular(grid, v, phase, sigma);
-	return reference_smoothstep(1.0, 2.0, sigma[0] - 1.0);
+	return reference_tear_of(sigma[0]);
 }
 
 void reference_split(double o, double l, uint32_t n, double *b, double *e)

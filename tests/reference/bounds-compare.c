@@ -18,8 +18,10 @@ struct compare {
 	double phase;
 	const uint8_t *pixels;
 	size_t stride;
-	uint8_t *want;   /* the reference's picture */
-	double *cut;     /* nothing behind this depth can show */
+	uint8_t *want; /* the reference's picture */
+	double *cut;   /* nothing behind this depth can show */
+	double *flat;  /* least depth of flat triangles, 2: none, and the first of them to be drawn */
+	uint32_t *flat_first;
 	double *outside; /* steps outside the best candidate's interval */
 	uint8_t *candidates;
 	double *span; /* widest interval of any candidate and channel */
@@ -34,6 +36,7 @@ struct drawn {
 	double sign, area;            /* area > 0, doubled */
 	double sigma[2];
 	double depth_slope; /* depth per pixel of distance */
+	bool is_flat;       /* no depth plane: one depth for all, interpolated without rounding, so that ties are ties */
 };
 
 /* An interval for each channel, in steps. */
@@ -61,6 +64,7 @@ static bool make_drawn(struct drawn *drawn, const struct compare *compare, const
 	reference_singular(grid, triangle->v, compare->phase, drawn->sigma);
 	const double z0 = grid->vertices[triangle->v[0]].z, z1 = grid->vertices[triangle->v[1]].z;
 	const double z2 = grid->vertices[triangle->v[2]].z;
+	drawn->is_flat = !compare->reference->geometry.has_depth;
 	const double gx = (z1 - z0) * (drawn->y[2] - drawn->y[0]) - (z2 - z0) * (drawn->y[1] - drawn->y[0]);
 	const double gy = (z2 - z0) * (drawn->x[1] - drawn->x[0]) - (z1 - z0) * (drawn->x[2] - drawn->x[0]);
 	drawn->depth_slope = drawn->area > 0.0 ? hypot(gx, gy) / drawn->area : 1e9;
@@ -145,7 +149,7 @@ static void show(const struct compare *compare, const struct drawn *drawn, const
 		y += share[k] * grid->vertices[drawn->triangle->v[k]].y;
 	}
 	for (int side = 0; side < 2 && torn; side++)
-		t[side] = reference_smoothstep(1.0, 2.0, drawn->sigma[0] - 1.0 + (side ? slack : -slack));
+		t[side] = reference_tear_of(drawn->sigma[0] + (side ? slack : -slack));
 	for (int c = 0; c < 3; c++) {
 		interval->least[c] = 0.0;
 		interval->most[c] = 255.0;
@@ -215,15 +219,31 @@ static void each_pixel(struct compare *compare, const struct drawn *drawn, visit
 static void visit_cut(struct compare *compare, const struct drawn *drawn, size_t pixel, double inside,
 					  const double share[3])
 {
-	if (inside > BOUNDS_EDGE && drawn->triangle->certain && drawn->sign > 0.0)
-		compare->cut[pixel] = fmin(compare->cut[pixel], depth_at(compare, drawn, share) + depth_slack(drawn));
+	const double z = compare->reference->grid.vertices[drawn->triangle->v[0]].z;
+	if (!(inside > BOUNDS_EDGE && drawn->triangle->certain && drawn->sign > 0.0))
+		return;
+	compare->cut[pixel] = fmin(compare->cut[pixel], depth_at(compare, drawn, share) + depth_slack(drawn));
+	if (drawn->is_flat && z < compare->flat[pixel]) { /* triangles come in drawing order */
+		compare->flat[pixel] = z;
+		compare->flat_first[pixel] = (uint32_t)(drawn->triangle - compare->bounds->triangles);
+	}
+}
+
+/* Behind another one for sure: deeper, or as deep and drawn later. */
+static bool is_hidden(const struct compare *compare, const struct drawn *drawn, size_t pixel, const double share[3])
+{
+	const double z = compare->reference->grid.vertices[drawn->triangle->v[0]].z;
+	const size_t index = (size_t)(drawn->triangle - compare->bounds->triangles);
+	if (depth_at(compare, drawn, share) - depth_slack(drawn) > compare->cut[pixel])
+		return true;
+	return drawn->is_flat && z == compare->flat[pixel] && index > compare->flat_first[pixel];
 }
 
 static void visit_candidate(struct compare *compare, const struct drawn *drawn, size_t pixel, double inside,
 							const double share[3])
 {
 	struct interval interval;
-	if (depth_at(compare, drawn, share) - depth_slack(drawn) > compare->cut[pixel])
+	if (is_hidden(compare, drawn, pixel, share))
 		return;
 	show(compare, drawn, share, &interval);
 	if (compare->candidates[pixel] < 255)
@@ -325,9 +345,13 @@ void bounds_compare(const struct bounds *bounds, const struct engine_request *re
 		.span = reference_alloc(count, sizeof(double)),
 		.plain = reference_alloc(count, sizeof(bool)),
 		.excused = reference_alloc(count, sizeof(bool)),
+		.flat = reference_alloc(count, sizeof(double)),
+		.flat_first = reference_alloc(count, sizeof(uint32_t)),
 	};
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = 0; i < count; i++) {
 		compare.cut[i] = compare.outside[i] = 1e9;
+		compare.flat[i] = 2.0;
+	}
 	reference_render(reference, request, compare.want);
 	choose_planes(&compare, request);
 	if (reference->hold || (request->show != ENGINE_SHOW_IN_BETWEEN && compare.phase == 0.0))
@@ -343,4 +367,6 @@ void bounds_compare(const struct bounds *bounds, const struct engine_request *re
 	free(compare.span);
 	free(compare.plain);
 	free(compare.excused);
+	free(compare.flat);
+	free(compare.flat_first);
 }

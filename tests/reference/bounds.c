@@ -61,8 +61,8 @@ static void weight_range(const struct bounds *bounds, const struct bounds_triang
 	const double slack = BOUNDS_STRETCH * sigma[0];
 	const bool may_turn = fabs(area) < BOUNDS_STRETCH * (1.0 + sigma[0]);
 	if (area > 0.0 || may_turn) {
-		w[0] = reference_smoothstep(0.25, 1.0, sigma[0] - 1.0 - slack);
-		w[1] = reference_smoothstep(0.25, 1.0, sigma[0] - 1.0 + slack);
+		w[0] = reference_weight_of(sigma[0] - slack);
+		w[1] = reference_weight_of(sigma[0] + slack);
 	}
 	if (may_turn)
 		w[0] = 0.0;

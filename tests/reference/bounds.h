@@ -25,8 +25,9 @@
  *  - llvmpipe filters 8-bit textures in 8 bits: each of its two interpolations
  *    (along, then across) is rounded, then the mix of samples is rounded for the
  *    display: BOUNDS_STEP, three times half a step.
- *  - Depth has 24 bits and is interpolated in float: two triangles that close
- *    (BOUNDS_DEPTH) at a pixel may be ordered either way.
+ *  - Depth has 24 bits or more and is interpolated in float: two triangles that
+ *    close (BOUNDS_DEPTH) at a pixel may be ordered either way. Without a depth
+ *    plane all have one depth exactly, and the first in drawing order must show.
  *  - A pixel centre that lies on a shared edge in source coordinates belongs to
  *    one of the two triangles, by a rule that GL leaves open: w between both.
  *  - A quad whose diagonal, or a vertex whose snapping, float may choose the

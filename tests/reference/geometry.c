@@ -130,6 +130,7 @@ static void fill_depth(struct reference_geometry *geometry, const struct frame *
 {
 	const struct pursuit_frame_header *header = &frame->header;
 	const int index = frame_find_plane(header, PURSUIT_ROLE_DEPTH);
+	geometry->has_depth = index >= 0;
 	for (uint32_t j = 0; j < geometry->height; j++)
 		for (uint32_t i = 0; i < geometry->width; i++) {
 			double z = 0.5;

@@ -73,7 +73,8 @@ struct reference_geometry {
 	uint32_t width, height;
 	double *ux, *uy, *z;
 	uint64_t invalid;
-	bool moves; /* some u is not 0 */
+	bool moves;     /* some u is not 0 */
+	bool has_depth; /* there is a depth plane; z is 0.5 without */
 };
 void reference_geometry_init(struct reference_geometry *geometry, const struct frame *frame,
 							 const struct reference_timing *timing, double display_width_mm, double distance_mm);
@@ -126,7 +127,9 @@ void reference_warp(const struct reference_grid *grid, uint32_t width, uint32_t 
 void reference_reduce(struct reference_picture *out, const struct reference_picture *in, double bias);
 void reference_low(struct reference_picture *out, const struct reference_picture *picture, uint32_t level, double bias);
 
-/* Blur weight and tear of one triangle [5]. */
+/* Blur weight and tear of a stretch, and of one triangle [5]. */
+double reference_weight_of(double stretch);
+double reference_tear_of(double stretch);
 double reference_weight(const struct reference_grid *grid, const uint32_t v[3], double last_phase,
 						enum engine_blur blur);
 double reference_tear(const struct reference_grid *grid, const uint32_t v[3], double phase, enum engine_blur blur);

@@ -209,6 +209,23 @@ static void test_geometry_formats(void)
 		}
 }
 
+/* Folds without depth: the first in drawing order shows. */
+static void test_order(void)
+{
+	char name[64];
+	for (uint64_t seed = 1; seed <= 6; seed++) {
+		const struct input_spec spec = {.width = 90,
+										.height = 50,
+										.field = seed % 3 ? INPUT_LAYERS : INPUT_SHAKE,
+										.image = INPUT_EDGES,
+										.seed = 60 + seed,
+										.no_depth = true};
+		struct engine_case what = {.name = name, .params.blur = ENGINE_BLUR_OFF, .begin.n = 2, REQUESTS(all_requests)};
+		snprintf(name, sizeof(name), "order %u", (unsigned)seed);
+		run(&spec, &what);
+	}
+}
+
 /* Frames that rest, one after another in one engine with frames that move: nothing may be left over. */
 static void test_rest(void)
 {
@@ -362,6 +379,7 @@ int main(int argc, char **argv)
 	RUN(test_sizes);
 	RUN(test_color_formats);
 	RUN(test_geometry_formats);
+	RUN(test_order);
 	RUN(test_rest);
 	RUN(test_low_frequency_layer);
 	RUN(test_beyond_last_phase);
