@@ -11,6 +11,7 @@
 #include "daemon/engine/params.h"
 #include "daemon/engine/pass.h"
 #include "daemon/engine/state.h"
+#include "daemon/engine/warm_up.h"
 
 /* State that every draw relies on and none changes for good. */
 static void set_up_gl(struct engine *engine)
@@ -38,15 +39,13 @@ static int apply_params(struct engine *engine, const struct engine_params *param
 	return 0;
 }
 
-/* What every frame of the method needs, so that the first one is not late. */
-static int compile(struct engine *engine, struct error *error)
+/* So that the first frame is not late. */
+static int prepare(struct engine *engine, struct error *error)
 {
-	const struct gl *gl = engine_gl(engine);
-	bool ok = program_use(&engine->programs, gl, PROGRAM_WARP, 0, error) &&
-	          program_use(&engine->programs, gl, PROGRAM_WARP, VARIANT_TEAR, error) &&
-	          program_use(&engine->programs, gl, PROGRAM_PYRAMID, 0, error) &&
-	          program_use(&engine->programs, gl, PROGRAM_UI, 0, error);
-	return ok ? 0 : -ENOTSUP;
+	int result = warm_up(engine, error);
+	engine->begun = false;
+	report_begin(&engine->report, 0, timer_source(&engine->timer));
+	return result;
 }
 
 struct engine *engine_create(const struct engine_params *params, struct error *error)
@@ -63,9 +62,8 @@ struct engine *engine_create(const struct engine_params *params, struct error *e
 		goto fail;
 	timer_init(&engine->timer, engine_gl(engine), engine->context->info.software, params->finish_each_pass);
 	set_up_gl(engine);
-	if (compile(engine, error) < 0)
+	if (prepare(engine, error) < 0)
 		goto fail;
-	report_begin(&engine->report, 0, timer_source(&engine->timer));
 	return engine;
 fail:
 	engine_destroy(&engine);

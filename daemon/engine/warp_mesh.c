@@ -16,9 +16,9 @@
 /* A triangle that shrinks to less than this share of its area may be turned over by rounding. */
 #define NEARLY_FLAT 0.01f
 
-/* Pixels a side: of L; of the pyramid, a multiple of its coarsest texel; of the displaced picture. */
-#define LOW_TILE 16u
-#define LEVELS_TILE 64u
+/* Pixels a side: of L; of the pyramid, but never less than its coarsest texel; of the displaced picture. */
+#define LOW_TILE 8u
+#define LEVELS_TILE 16u
 #define FOLD_TILE 32u
 
 enum kind {
@@ -179,8 +179,9 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_
 {
 	const struct plan *plan = mesh->plan;
 	float phase = plan->last_phase;
+	uint32_t levels_tile = LEVELS_TILE >> level ? LEVELS_TILE : 1u << level;
 	if (!tiles_begin(&mesh->low, plan->width, plan->height, LOW_TILE) ||
-	    !tiles_begin(&mesh->levels, plan->width, plan->height, LEVELS_TILE))
+	    !tiles_begin(&mesh->levels, plan->width, plan->height, levels_tile))
 		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
 	for (uint32_t i = 0; i < mesh->count; i += 3) {
 		mesh->kinds[i / 3] = KIND_PLAIN;
