@@ -89,9 +89,9 @@ bool args_read_rate(const char *text, struct arg_rate *rate)
 {
 	const char *end;
 	if (read_whole(text, "/", &rate->numerator, &end) && *end == '/' &&
-	    read_whole(end + 1, "", &rate->denominator, &end) && *end == '\0') {
-		return rate->denominator > 0 && rate->denominator < 1000000000 &&
-		       rate->numerator >= rate->denominator && rate->numerator / rate->denominator <= 1000;
+		read_whole(end + 1, "", &rate->denominator, &end) && *end == '\0') {
+		return rate->denominator > 0 && rate->denominator < 1000000000 && rate->numerator >= rate->denominator &&
+			   rate->numerator / rate->denominator <= 1000;
 	}
 	double value;
 	if (!read_real(text, &value) || value < 1 || value > 1000)

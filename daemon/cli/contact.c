@@ -23,8 +23,8 @@
 #define CLIPPED_SHARE 0.002
 
 struct contact {
-	uint32_t width, height;           /* of the pictures */
-	uint32_t shrink, enlarge;         /* one of them is 1 */
+	uint32_t width, height;   /* of the pictures */
+	uint32_t shrink, enlarge; /* one of them is 1 */
 	uint32_t cell_width, cell_height;
 	uint32_t rows;
 	char labels[MAX_ROWS][160];
@@ -66,7 +66,7 @@ void contact_destroy(struct contact **contact)
 
 /* The mean over the pixels of one cell pixel; of the difference if there is another picture. */
 static uint8_t mean_at(const struct contact *contact, const struct picture *a, const struct picture *b, uint32_t x,
-                       uint32_t y, uint32_t channel)
+					   uint32_t y, uint32_t channel)
 {
 	uint32_t sum = 0, step = contact->shrink, left = x * step / contact->enlarge, top = y * step / contact->enlarge;
 	uint32_t bottom = top + step < a->height ? top + step : a->height;
@@ -103,7 +103,7 @@ static void count_errors(struct contact *contact, const uint8_t *cell)
 }
 
 int contact_add(struct contact *contact, const char *label, const struct picture *real,
-                const struct picture *in_between, const struct picture *truth, struct error *error)
+				const struct picture *in_between, const struct picture *truth, struct error *error)
 {
 	const struct picture *const pictures[COLUMNS] = {real, in_between, truth, in_between};
 	if (contact->rows == MAX_ROWS)
@@ -156,8 +156,8 @@ static void put_text(const struct sheet *sheet, uint32_t x, uint32_t y, const ch
 	}
 }
 
-static void put_cell(const struct sheet *sheet, const struct contact *contact, uint32_t row, uint32_t column, uint32_t x,
-                     uint32_t y, uint32_t factor)
+static void put_cell(const struct sheet *sheet, const struct contact *contact, uint32_t row, uint32_t column,
+					 uint32_t x, uint32_t y, uint32_t factor)
 {
 	const uint8_t *cell = contact->cells[row][column];
 	for (uint32_t j = 0; j < contact->cell_height; j++) {
@@ -181,7 +181,7 @@ static void draw(const struct sheet *sheet, const struct contact *contact, const
 		uint32_t y = GAP + 3 * LINE + row * (contact->cell_height + LINE + GAP);
 		for (uint32_t column = 0; column < COLUMNS; column++)
 			put_cell(sheet, contact, row, column, GAP + column * (contact->cell_width + GAP), y,
-			         column == 3 ? factor : 1);
+					 column == 3 ? factor : 1);
 		put_text(sheet, GAP, y + contact->cell_height + LETTER_SCALE * 2, contact->labels[row]);
 	}
 }
@@ -189,8 +189,8 @@ static void draw(const struct sheet *sheet, const struct contact *contact, const
 int contact_write(const struct contact *contact, const char *title, const char *path, struct error *error)
 {
 	struct sheet sheet = {
-	    .width = GAP + COLUMNS * (contact->cell_width + GAP),
-	    .height = GAP + 3 * LINE + contact->rows * (contact->cell_height + LINE + GAP),
+		.width = GAP + COLUMNS * (contact->cell_width + GAP),
+		.height = GAP + 3 * LINE + contact->rows * (contact->cell_height + LINE + GAP),
 	};
 	size_t bytes = 4 * (size_t)sheet.width * sheet.height;
 	sheet.data = malloc(bytes);

@@ -20,7 +20,7 @@ void contact_destroy(struct contact **contact);
 
 /* One row; copies what it needs. 0 or -ENOMEM with a sentence. */
 int contact_add(struct contact *contact, const char *label, const struct picture *real,
-                const struct picture *in_between, const struct picture *truth, struct error *error);
+				const struct picture *in_between, const struct picture *truth, struct error *error);
 
 /* Writes the sheet as PNG. The error is shown by a factor that is chosen for all rows and named. */
 int contact_write(const struct contact *contact, const char *title, const char *path, struct error *error);

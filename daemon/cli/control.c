@@ -36,7 +36,7 @@ static int usual_path(struct sockaddr_un *address, struct error *error)
 		length = snprintf(address->sun_path, sizeof(address->sun_path), "/run/pursuit/socket");
 	if (length < 0 || (size_t)length >= sizeof(address->sun_path))
 		return error_set(error, -ENAMETOOLONG, "the path of the socket is longer than %zu bytes",
-		                 sizeof(address->sun_path) - 1);
+						 sizeof(address->sun_path) - 1);
 	return 0;
 }
 
@@ -47,7 +47,7 @@ static int find_path(struct sockaddr_un *address, const char *path, struct error
 		return usual_path(address, error);
 	if (strlen(path) >= sizeof(address->sun_path))
 		return error_set(error, -ENAMETOOLONG, "%s: the path of a socket has at most %zu bytes", path,
-		                 sizeof(address->sun_path) - 1);
+						 sizeof(address->sun_path) - 1);
 	memcpy(address->sun_path, path, strlen(path) + 1);
 	return 0;
 }
@@ -69,7 +69,7 @@ static int receive(struct control *control, union packet *packet, struct error *
 		return error_set(error, -ECONNRESET, "the daemon closed the connection");
 	if ((size_t)length < sizeof(packet->header) || packet->header.size != (size_t)length)
 		return error_set(error, -EPROTO, "the daemon sent a packet of %zd bytes that says it has %u", length,
-		                 (size_t)length < sizeof(packet->header) ? 0 : packet->header.size);
+						 (size_t)length < sizeof(packet->header) ? 0 : packet->header.size);
 	return 0;
 }
 
@@ -78,18 +78,18 @@ static int refused(const union packet *packet, struct error *error)
 	if (packet->header.size < sizeof(packet->refused))
 		return error_set(error, -EPROTO, "the daemon refused without a reason");
 	return error_set(error, -ECONNREFUSED, "the daemon refused: %.*s", (int)sizeof(packet->refused.text),
-	                 packet->refused.text);
+					 packet->refused.text);
 }
 
 static int greet(struct control *control, struct error *error)
 {
 	union packet packet;
 	const struct pursuit_message_hello hello = {
-	    .header = {PURSUIT_MESSAGE_HELLO, sizeof(hello), ++control->serial, 0},
-	    .magic = PURSUIT_WIRE_MAGIC,
-	    .version_min = PURSUIT_WIRE_VERSION_MIN,
-	    .version_max = PURSUIT_WIRE_VERSION_MAX,
-	    .name = "pursuit",
+		.header = {PURSUIT_MESSAGE_HELLO, sizeof(hello), ++control->serial, 0},
+		.magic = PURSUIT_WIRE_MAGIC,
+		.version_min = PURSUIT_WIRE_VERSION_MIN,
+		.version_max = PURSUIT_WIRE_VERSION_MAX,
+		.name = "pursuit",
 	};
 	if (send(control->fd, &hello, sizeof(hello), MSG_NOSIGNAL) < 0)
 		return error_set(error, -errno, "the connection to the daemon broke: %s", strerror(errno));
@@ -114,7 +114,8 @@ int control_open(struct control *control, const char *path, struct error *error)
 	if (control->fd < 0)
 		return error_set(error, -errno, "no socket: %s", strerror(errno));
 	if (connect(control->fd, (const struct sockaddr *)&address, sizeof(address)) < 0)
-		result = error_set(error, -errno, "no daemon at %s (%s). Start one: pursuitd", address.sun_path, strerror(errno));
+		result =
+			error_set(error, -errno, "no daemon at %s (%s). Start one: pursuitd", address.sun_path, strerror(errno));
 	else
 		result = greet(control, error);
 	if (result < 0)
@@ -133,8 +134,8 @@ static int send_text(struct control *control, const char *text, int fd, struct e
 {
 	size_t length = strlen(text);
 	struct pursuit_message_control head = {
-	    .header = {PURSUIT_MESSAGE_CONTROL, (uint32_t)(sizeof(head) + length), ++control->serial, 0},
-	    .text_bytes = (uint32_t)length,
+		.header = {PURSUIT_MESSAGE_CONTROL, (uint32_t)(sizeof(head) + length), ++control->serial, 0},
+		.text_bytes = (uint32_t)length,
 	};
 	char copy[256];
 	union {
@@ -178,13 +179,13 @@ int control_ask(struct control *control, const char *text, int fd, json_t **repl
 		return refused(&packet, error);
 	size_t length = packet.header.size - sizeof(packet.control);
 	if (packet.header.type != PURSUIT_MESSAGE_CONTROL_REPLY || packet.header.size < sizeof(packet.control) ||
-	    packet.control.text_bytes != length)
-		return error_set(error, -EPROTO, "the daemon answered with a message of type %u and %u bytes", packet.header.type,
-		                 packet.header.size);
+		packet.control.text_bytes != length)
+		return error_set(error, -EPROTO, "the daemon answered with a message of type %u and %u bytes",
+						 packet.header.type, packet.header.size);
 	const char *answer = (const char *)packet.bytes + sizeof(packet.control);
 	if (packet.control.status)
-		return error_set(error, -(int)packet.control.status, "the daemon says: %.*s", (int)(length < 400 ? length : 400),
-		                 answer);
+		return error_set(error, -(int)packet.control.status, "the daemon says: %.*s",
+						 (int)(length < 400 ? length : 400), answer);
 	if (reply)
 		*reply = read_reply(answer, length);
 	return 0;

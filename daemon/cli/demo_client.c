@@ -57,16 +57,16 @@ static int wait_for_attach(struct demo_client *client, struct error *error)
 static int open_stream(struct demo_client *client, bool has_ui, const struct scene_camera *camera, struct error *error)
 {
 	const struct pursuit_stream_params params = {
-	    .width = client->params.size.width,
-	    .height = client->params.size.height,
-	    .color_format = PURSUIT_COLOR_BGRA8,
-	    .depth_format = PURSUIT_DEPTH_FLOAT32,
-	    .near_distance = camera->near_distance,
-	    .far_distance = camera->far_distance,
-	    .motion_format = PURSUIT_MOTION_FLOAT16,
-	    .ui_format = has_ui ? PURSUIT_UI_BGRA8 : PURSUIT_UI_ABSENT,
-	    .socket_path = client->params.socket,
-	    .name = "pursuit demo",
+		.width = client->params.size.width,
+		.height = client->params.size.height,
+		.color_format = PURSUIT_COLOR_BGRA8,
+		.depth_format = PURSUIT_DEPTH_FLOAT32,
+		.near_distance = camera->near_distance,
+		.far_distance = camera->far_distance,
+		.motion_format = PURSUIT_MOTION_FLOAT16,
+		.ui_format = has_ui ? PURSUIT_UI_BGRA8 : PURSUIT_UI_ABSENT,
+		.socket_path = client->params.socket,
+		.name = "pursuit demo",
 	};
 	client->stream = pursuit_open(&params);
 	if (!client->stream)
@@ -131,20 +131,20 @@ static int render_one(struct demo_client *client, uint64_t index, struct error *
 		return error_set(error, -EIO, "GL failed to render the scene");
 	uint64_t rendered = now_ns();
 	struct pursuit_frame frame = {
-	    .time_ns = client->epoch_ns + scene_source_time(rate, index),
-	    .flags = PURSUIT_FLAG_MATRICES | (camera.cut ? (uint32_t)PURSUIT_FLAG_CUT : 0u),
+		.time_ns = client->epoch_ns + scene_source_time(rate, index),
+		.flags = PURSUIT_FLAG_MATRICES | (camera.cut ? (uint32_t)PURSUIT_FLAG_CUT : 0u),
 	};
 	frame.real_interval_ns = client->submitted
-	                             ? frame.time_ns - client->epoch_ns - scene_source_time(rate, client->previous)
-	                             : scene_source_time(rate, 1);
+								 ? frame.time_ns - client->epoch_ns - scene_source_time(rate, client->previous)
+								 : scene_source_time(rate, 1);
 	memcpy(frame.view_projection, camera.view_projection, sizeof(frame.view_projection));
 	memcpy(frame.previous_view_projection, camera.previous_view_projection, sizeof(frame.previous_view_projection));
 	const struct pursuit_gl_textures read = {
-	    .color = textures.color,
-	    .depth = textures.depth,
-	    .motion = textures.backward,
-	    .ui = textures.ui,
-	    .bottom_up = 1,
+		.color = textures.color,
+		.depth = textures.depth,
+		.motion = textures.backward,
+		.ui = textures.ui,
+		.bottom_up = 1,
 	};
 	pursuit_gl_submit(client->gl, &read, &frame);
 	note_times(client, start, rendered, now_ns());
@@ -164,7 +164,7 @@ static uint64_t next_index(struct demo_client *client)
 }
 
 int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(void *context), void *context,
-                    struct error *error)
+					struct error *error)
 {
 	struct pursuit_feedback_report report;
 	if (client->submitted == 0)
@@ -201,7 +201,7 @@ json_t *demo_client_json(struct demo_client *client)
 	pursuit_get_status(client->stream, &status);
 	double copied = client->submitted ? (double)status.bytes_copied / (double)client->submitted : 0;
 	return json_pack("{s:I, s:I, s:I, s:I, s:o, s:o, s:f}", "submitted_frames", (json_int_t)client->submitted,
-	                 "skipped_frames", (json_int_t)client->skipped, "published_frames", (json_int_t)status.published,
-	                 "no_slot", (json_int_t)status.no_slot, "render_ms", spread(client->render_ms, client->times),
-	                 "submit_us", spread(client->submit_us, client->times), "bytes_copied_per_frame", copied);
+					 "skipped_frames", (json_int_t)client->skipped, "published_frames", (json_int_t)status.published,
+					 "no_slot", (json_int_t)status.no_slot, "render_ms", spread(client->render_ms, client->times),
+					 "submit_us", spread(client->submit_us, client->times), "bytes_copied_per_frame", copied);
 }

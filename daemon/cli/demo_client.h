@@ -29,7 +29,7 @@ void demo_client_destroy(struct demo_client **client);
 
 /* Goes on rendering for so many seconds; stops early when `stop` says so (asked once a frame). */
 int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(void *context), void *context,
-                    struct error *error);
+					struct error *error);
 
 /* CLOCK_MONOTONIC of the scene's time 0. */
 uint64_t demo_client_epoch(const struct demo_client *client);

@@ -123,7 +123,7 @@ static int wait_until_ready(struct demo_daemon *daemon, struct error *error)
 		wait_step();
 	}
 	return error_set(error, -ETIMEDOUT, "pursuitd did not answer within %d s; see %s", START_LIMIT_MS / 1000,
-	                 daemon->log);
+					 daemon->log);
 }
 
 int demo_daemon_start(struct demo_daemon *daemon, const char *const *arguments, const char *log, struct error *error)
@@ -143,8 +143,8 @@ int demo_daemon_start(struct demo_daemon *daemon, const char *const *arguments, 
 		return result;
 	}
 	snprintf(daemon->socket, sizeof(daemon->socket), "%s/socket", daemon->folder);
-	all[count++] = (char *)(uintptr_t)"pursuitd";
-	all[count++] = (char *)(uintptr_t)"--socket";
+	all[count++] = (char *)(uintptr_t) "pursuitd";
+	all[count++] = (char *)(uintptr_t) "--socket";
 	all[count++] = daemon->socket;
 	for (; *arguments && count < MAX_ARGUMENTS + 3; arguments++)
 		all[count++] = (char *)(uintptr_t)*arguments;
@@ -176,8 +176,8 @@ static int reap(struct demo_daemon *daemon, struct error *error)
 	}
 	if (ended < 0 || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
 		return error_set(error, -ECHILD, "pursuitd ended badly (%s %d); see %s",
-		                 WIFSIGNALED(status) ? "signal" : "status",
-		                 WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), daemon->log);
+						 WIFSIGNALED(status) ? "signal" : "status",
+						 WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), daemon->log);
 	return 0;
 }
 
@@ -188,7 +188,7 @@ static void remove_folder(const char *path)
 	if (!folder)
 		return;
 	for (struct dirent *entry; (entry = readdir(folder));) {
-		if (entry->d_name[0] != '.')
+		if (strcmp(entry->d_name, ".") && strcmp(entry->d_name, ".."))
 			unlinkat(dirfd(folder), entry->d_name, 0);
 	}
 	closedir(folder);

@@ -25,7 +25,7 @@ struct work {
 	struct recorded_frames frames;
 	struct schedule schedule;
 	struct engine *engine;
-	uint8_t *truth;  /* size of a picture */
+	uint8_t *truth; /* size of a picture */
 	struct picture truth_picture;
 	struct scored *scored;
 	uint32_t scored_count;
@@ -60,7 +60,7 @@ static uint64_t interval_of(const struct work *work, uint32_t frame)
 }
 
 static int add_frame(struct work *work, uint32_t frame, const struct timeline_row *rows, uint32_t count,
-                     struct error *error)
+					 struct error *error)
 {
 	struct beginning beginning = {.frame = frame, .span = 1};
 	beginning.params.n = count < 8 ? count : 8;
@@ -75,11 +75,11 @@ static int add_frame(struct work *work, uint32_t frame, const struct timeline_ro
 			continue;
 		double passed = rows[i].phase * (double)beginning.params.real_interval_ns;
 		const struct showing showing = {
-		    .number = rows[i].vblank,
-		    .show = rows[i].show == TIMELINE_REAL ? ENGINE_SHOW_REAL : ENGINE_SHOW_IN_BETWEEN,
-		    .phase = rows[i].phase,
-		    .moment_ns = work->frames.frames[frame].time_ns + (uint64_t)(int64_t)passed,
-		    .truth = -1,
+			.number = rows[i].vblank,
+			.show = rows[i].show == TIMELINE_REAL ? ENGINE_SHOW_REAL : ENGINE_SHOW_IN_BETWEEN,
+			.phase = rows[i].phase,
+			.moment_ns = work->frames.frames[frame].time_ns + (uint64_t)(int64_t)passed,
+			.truth = -1,
 		};
 		result = schedule_add_showing(&work->schedule, &showing, error);
 	}
@@ -132,29 +132,29 @@ static int score_picture(void *context, const struct player_picture *picture, st
 	quality_add(&one, &picture->shown, picture->truth);
 	quality_add(&work->score->quality, &picture->shown, picture->truth);
 	work->scored[work->scored_count++] = (struct scored){
-	    .beginning = (uint32_t)(picture->beginning - work->schedule.beginnings),
-	    .showing = (uint32_t)(picture->showing - work->schedule.showings),
-	    .psnr = one.psnr,
-	    .ssim = one.ssim,
+		.beginning = (uint32_t)(picture->beginning - work->schedule.beginnings),
+		.showing = (uint32_t)(picture->showing - work->schedule.showings),
+		.psnr = one.psnr,
+		.ssim = one.ssim,
 	};
 	json_array_append_new(work->score->scored,
-	                      json_pack("{s:I, s:f, s:f, s:f, s:f}", "vblank", (json_int_t)picture->showing->number,
-	                                "scene_time", scene_time(work, picture->showing), "phase", picture->showing->phase,
-	                                "psnr", one.psnr, "ssim", one.ssim));
+						  json_pack("{s:I, s:f, s:f, s:f, s:f}", "vblank", (json_int_t)picture->showing->number,
+									"scene_time", scene_time(work, picture->showing), "phase", picture->showing->phase,
+									"psnr", one.psnr, "ssim", one.ssim));
 	return 0;
 }
 
 static int play(struct work *work, const struct schedule *schedule,
-                int (*take)(void *context, const struct player_picture *picture, struct error *error),
-                struct error *error)
+				int (*take)(void *context, const struct player_picture *picture, struct error *error),
+				struct error *error)
 {
 	struct player player = {
-	    .reader = work->reader,
-	    .frames = &work->frames,
-	    .schedule = schedule,
-	    .engine = work->engine,
-	    .truth = {work, get_truth},
-	    .observer = {work, take, NULL},
+		.reader = work->reader,
+		.frames = &work->frames,
+		.schedule = schedule,
+		.engine = work->engine,
+		.truth = {work, get_truth},
+		.observer = {work, take, NULL},
 	};
 	return player_run(&player, error);
 }
@@ -184,7 +184,7 @@ static int sheet_picture(void *context, const struct player_picture *picture, st
 	}
 	double psnr = measure_psnr(&picture->shown, picture->truth);
 	snprintf(label, sizeof(label), "at %.3f s, phase %.2f: PSNR %.2f dB, SSIM %.4f", scene_time(work, picture->showing),
-	         picture->showing->phase, psnr, measure_ssim(&picture->shown, picture->truth));
+			 picture->showing->phase, psnr, measure_ssim(&picture->shown, picture->truth));
 	struct picture real = picture->shown;
 	real.data = work->real;
 	return contact_add(work->contact, label, &real, &picture->shown, picture->truth, error);
@@ -234,7 +234,7 @@ static int open_work(struct work *work, struct error *error)
 	work->truth = malloc(bytes);
 	work->real = malloc(bytes);
 	work->truth_picture =
-	    (struct picture){work->truth, 4 * (size_t)params->size.width, params->size.width, params->size.height};
+		(struct picture){work->truth, 4 * (size_t)params->size.width, params->size.width, params->size.height};
 	work->contact = contact_create(params->size.width, params->size.height);
 	work->score->scored = json_array();
 	if (!work->truth || !work->real || !work->contact || !work->score->scored)

@@ -22,14 +22,14 @@ struct demo_score_params {
 	const struct settings *settings;
 	struct scene_source *source;
 	struct arg_size size;
-	uint64_t epoch_ns;      /* CLOCK_MONOTONIC of the scene's time 0 */
-	const char *title;      /* of the contact sheet */
-	const char *contact;    /* path of the contact sheet */
+	uint64_t epoch_ns;   /* CLOCK_MONOTONIC of the scene's time 0 */
+	const char *title;   /* of the contact sheet */
+	const char *contact; /* path of the contact sheet */
 };
 
 struct demo_score {
 	struct quality quality;
-	json_t *scored;         /* a row for each scored in-between; the caller's */
+	json_t *scored;                /* a row for each scored in-between; the caller's */
 	uint32_t first_row, row_count; /* of the timeline: the vblanks that the recording covers; 0 rows: none */
 };
 

@@ -20,7 +20,7 @@
 /* ---- writing ---- */
 
 int expect_writer_open(struct expect_writer *writer, const char *path, const struct engine_info *info,
-                       const char *method, struct error *error)
+					   const char *method, struct error *error)
 {
 	*writer = (struct expect_writer){.path = path, .info = info, .method = method};
 	writer->file = fopen(path, "w");
@@ -30,13 +30,13 @@ int expect_writer_open(struct expect_writer *writer, const char *path, const str
 }
 
 int expect_writer_add(struct expect_writer *writer, uint64_t number, const struct picture *picture, uint64_t hash,
-                      struct error *error)
+					  struct error *error)
 {
 	if (!writer->started)
 		fprintf(writer->file,
-		        "# pursuit expect 1\n# renderer %s\n# version %s\n# context %s\n# method %s\n# size %ux%u\n",
-		        writer->info->renderer, writer->info->version, writer->info->context, writer->method, picture->width,
-		        picture->height);
+				"# pursuit expect 1\n# renderer %s\n# version %s\n# context %s\n# method %s\n# size %ux%u\n",
+				writer->info->renderer, writer->info->version, writer->info->context, writer->method, picture->width,
+				picture->height);
 	writer->started = true;
 	if (fprintf(writer->file, "%" PRIu64 " %016" PRIx64 "\n", number, hash) < 0)
 		return error_set(error, -EIO, "%s: %s", writer->path, strerror(errno));
@@ -96,7 +96,7 @@ static void note_maker(struct expect *expect, const char *line)
 		return;
 	const char *value = strchr(line + 2, ' ') + 1;
 	snprintf(expect->made_by + used, sizeof(expect->made_by) - used, "%s%.*s", used ? ", " : "",
-	         (int)strcspn(value, "\n"), value);
+			 (int)strcspn(value, "\n"), value);
 }
 
 static int load_hashes(struct expect *expect, const char *path, FILE *file, struct error *error)
@@ -107,8 +107,8 @@ static int load_hashes(struct expect *expect, const char *path, FILE *file, stru
 		uint64_t number, hash;
 		char rest;
 		if (row == 1 && strcmp(line, "# pursuit expect 1\n") != 0)
-			return error_set(error, -EINVAL, "%s: no file of --write-expect: its first line is not `# pursuit expect 1`",
-			                 path);
+			return error_set(error, -EINVAL,
+							 "%s: no file of --write-expect: its first line is not `# pursuit expect 1`", path);
 		note_maker(expect, line);
 		if (line[0] == '#')
 			continue;
@@ -190,7 +190,8 @@ void expect_finish(struct expect *expect)
 
 /* ---- comparing ---- */
 
-__attribute__((format(printf, 3, 4))) static void differs(struct expect *expect, uint64_t number, const char *format, ...)
+__attribute__((format(printf, 3, 4))) static void differs(struct expect *expect, uint64_t number, const char *format,
+														  ...)
 {
 	if (++expect->different > NAMED_DIFFERENCES)
 		return;
@@ -241,15 +242,14 @@ static void compare_image(struct expect *expect, uint64_t number, const struct p
 	char name[PATTERN_MAX_PATH];
 	struct image image;
 	struct error error = {"its name is too long"};
-	if (!pattern_name(expect->pattern, number, name) ||
-	    image_read(name, IMAGE_BGRA, 0, &image, &error) < 0) {
+	if (!pattern_name(expect->pattern, number, name) || image_read(name, IMAGE_BGRA, 0, &image, &error) < 0) {
 		differs(expect, number, "has no image to compare with: %s", error.text);
 		return;
 	}
 	const struct picture wanted = {image.bgra, 4 * (size_t)image.width, image.width, image.height};
 	if (image.width != picture->width || image.height != picture->height) {
 		differs(expect, number, "is %ux%u, %s is %ux%u", picture->width, picture->height, name, image.width,
-		        image.height);
+				image.height);
 	} else if (expect->tolerance == EXPECT_PSNR) {
 		double psnr = measure_psnr(picture, &wanted);
 		if (psnr < expect->limit)
@@ -286,10 +286,10 @@ bool expect_conclude(struct expect *expect, const struct engine_info *info)
 	snprintf(maker, sizeof(maker), "%s, %s", info->renderer, info->version);
 	if (expect->count && strcmp(maker, expect->made_by) != 0)
 		fprintf(stderr,
-		        "pursuit replay: the expectation was made by another renderer (%s; this is %s): only pictures of the "
-		        "same one are promised to be equal\n",
-		        expect->made_by, maker);
+				"pursuit replay: the expectation was made by another renderer (%s; this is %s): only pictures of the "
+				"same one are promised to be equal\n",
+				expect->made_by, maker);
 	fprintf(stderr, "pursuit replay: %u of %u displayed frames differ from what is expected\n", expect->different,
-	        expect->compared);
+			expect->compared);
 	return false;
 }

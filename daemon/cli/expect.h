@@ -31,9 +31,9 @@ struct expect_writer {
 };
 
 int expect_writer_open(struct expect_writer *writer, const char *path, const struct engine_info *info,
-                       const char *method, struct error *error);
+					   const char *method, struct error *error);
 int expect_writer_add(struct expect_writer *writer, uint64_t number, const struct picture *picture, uint64_t hash,
-                      struct error *error);
+					  struct error *error);
 /* 0 or a negative errno with a sentence: a full disk may be told only here. NULL file accepted. */
 int expect_writer_close(struct expect_writer *writer, struct error *error);
 

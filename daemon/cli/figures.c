@@ -13,10 +13,10 @@
 int figures_init(struct figures *figures, struct error *error)
 {
 	*figures = (struct figures){
-	    .passes = json_object(),
-	    .left_out = json_object(),
-	    .frames = json_array(),
-	    .displayed = json_array(),
+		.passes = json_object(),
+		.left_out = json_object(),
+		.frames = json_array(),
+		.displayed = json_array(),
 	};
 	if (figures->passes && figures->left_out && figures->frames && figures->displayed)
 		return 0;
@@ -84,12 +84,13 @@ static struct quality score(struct figures *figures, const struct player_picture
 }
 
 int figures_add_picture(struct figures *figures, const struct player_picture *picture, uint64_t hash,
-                        struct error *error)
+						struct error *error)
 {
 	char text[20];
 	snprintf(text, sizeof(text), "%016" PRIx64, hash);
-	json_t *row = json_pack("{s:I, s:s, s:o, s:s}", "number", (json_int_t)picture->showing->number, "show",
-	                        show_name(picture->showing), "phase", figures_number(picture->showing->phase), "hash", text);
+	json_t *row =
+		json_pack("{s:I, s:s, s:o, s:s}", "number", (json_int_t)picture->showing->number, "show",
+				  show_name(picture->showing), "phase", figures_number(picture->showing->phase), "hash", text);
 	if (!row)
 		return error_set(error, -ENOMEM, "out of memory");
 	if (picture->truth) {
@@ -128,7 +129,7 @@ static int add_time(struct figures *figures, double ms, struct error *error)
 }
 
 int figures_add_frame(struct figures *figures, const struct player_frame *frame, const struct recorded_frames *frames,
-                      struct error *error)
+					  struct error *error)
 {
 	const struct engine_report *report = frame->report;
 	const struct recorded_frame *real = &frames->frames[frame->beginning->frame];
@@ -139,19 +140,19 @@ int figures_add_frame(struct figures *figures, const struct player_frame *frame,
 			continue;
 		count(figures->passes, pass->name, pass->runs);
 		json_object_set_new(passes, pass->name,
-		                    json_pack("{s:i, s:o}", "runs", (int)pass->runs, "ms", figures_number(pass->ms)));
+							json_pack("{s:i, s:o}", "runs", (int)pass->runs, "ms", figures_number(pass->ms)));
 	}
 	for (uint32_t i = 0; i < report->left_out_count; i++) {
 		count(figures->left_out, report->left_out[i].name, 1);
 		json_object_set_new(left_out, report->left_out[i].name, json_string(report->left_out[i].reason));
 	}
 	json_t *row = json_pack("{s:I, s:I, s:I, s:i, s:o, s:o, s:o, s:s, s:o, s:o, s:o}", "frame", (json_int_t)real->index,
-	                        "frame_id", (json_int_t)real->frame_id, "time_ns", (json_int_t)real->time_ns, "n",
-	                        (int)frame->beginning->params.n, "interval_ms",
-	                        figures_number((double)frame->beginning->params.real_interval_ns / 1e6), "engine_ms",
-	                        figures_number(frame->engine_ms), "passes", passes, "time_source",
-	                        report->time_source ? report->time_source : "", "left_out", left_out, "plan",
-	                        plan ? plan : json_null(), "displayed", figures->displayed);
+							"frame_id", (json_int_t)real->frame_id, "time_ns", (json_int_t)real->time_ns, "n",
+							(int)frame->beginning->params.n, "interval_ms",
+							figures_number((double)frame->beginning->params.real_interval_ns / 1e6), "engine_ms",
+							figures_number(frame->engine_ms), "passes", passes, "time_source",
+							report->time_source ? report->time_source : "", "left_out", left_out, "plan",
+							plan ? plan : json_null(), "displayed", figures->displayed);
 	figures->displayed = json_array();
 	if (!row || !figures->displayed)
 		return error_set(error, -ENOMEM, "out of memory");
@@ -181,8 +182,8 @@ json_t *figures_quality_json(const struct quality *quality)
 	if (quality->frames == 0)
 		return json_pack("{s:n, s:n, s:n, s:i}", "psnr", "ssim", "psnr_min", "frames", 0);
 	return json_pack("{s:o, s:o, s:o, s:i}", "psnr", figures_number(quality->psnr), "ssim",
-	                 figures_number(quality->ssim), "psnr_min", figures_number(quality->psnr_min), "frames",
-	                 (int)quality->frames);
+					 figures_number(quality->ssim), "psnr_min", figures_number(quality->psnr_min), "frames",
+					 (int)quality->frames);
 }
 
 static double displayed_hz(const struct figures *figures)
@@ -194,15 +195,14 @@ json_t *figures_json(struct figures *figures)
 {
 	double p50 = figures_percentile(figures->engine_ms, figures->real_frames, 50);
 	double p99 = figures_percentile(figures->engine_ms, figures->real_frames, 99);
-	return json_pack("{s:i, s:i, s:i, s:i, s:o, s:i, s:i, s:{s:o, s:o}, s:O, s:O, s:o, s:i, s:i}", "real_frames",
-	                 (int)figures->real_frames, "in_between_frames", (int)figures->in_between_frames,
-	                 "displayed_frames", (int)figures->displayed_frames, "repeated_frames",
-	                 (int)figures->repeated_frames, "displayed_hz", figures_number(displayed_hz(figures)),
-	                 "late_in_betweens", (int)figures->late_in_betweens, "lost_real_frames",
-	                 (int)figures->lost_real_frames, "engine_ms", "p50", figures_number(p50), "p99",
-	                 figures_number(p99), "passes", figures->passes, "left_out", figures->left_out, "quality",
-	                 figures_quality_json(&figures->quality), "width", (int)figures->size.width, "height",
-	                 (int)figures->size.height);
+	return json_pack(
+		"{s:i, s:i, s:i, s:i, s:o, s:i, s:i, s:{s:o, s:o}, s:O, s:O, s:o, s:i, s:i}", "real_frames",
+		(int)figures->real_frames, "in_between_frames", (int)figures->in_between_frames, "displayed_frames",
+		(int)figures->displayed_frames, "repeated_frames", (int)figures->repeated_frames, "displayed_hz",
+		figures_number(displayed_hz(figures)), "late_in_betweens", (int)figures->late_in_betweens, "lost_real_frames",
+		(int)figures->lost_real_frames, "engine_ms", "p50", figures_number(p50), "p99", figures_number(p99), "passes",
+		figures->passes, "left_out", figures->left_out, "quality", figures_quality_json(&figures->quality), "width",
+		(int)figures->size.width, "height", (int)figures->size.height);
 }
 
 json_t *figures_settings_json(const struct settings *settings)
@@ -222,7 +222,8 @@ static void print_counts(const json_t *object, const char *label, FILE *out)
 	json_t *value, *counts = json_copy((json_t *)(uintptr_t)object);
 	const char *separator = "";
 	fprintf(out, "  %-18s ", label);
-	json_object_foreach(counts, name, value) {
+	json_object_foreach(counts, name, value)
+	{
 		fprintf(out, "%s%s %" JSON_INTEGER_FORMAT, separator, name, json_integer_value(value));
 		separator = ", ";
 	}
@@ -233,21 +234,21 @@ static void print_counts(const json_t *object, const char *label, FILE *out)
 void figures_print(struct figures *figures, FILE *out)
 {
 	fprintf(out, "  %-18s %u, %u in-between, %u displayed", "real frames", figures->real_frames,
-	        figures->in_between_frames, figures->displayed_frames);
+			figures->in_between_frames, figures->displayed_frames);
 	if (figures->repeated_frames)
 		fprintf(out, ", %u of them repeated", figures->repeated_frames);
 	if (figures->lost_real_frames)
 		fprintf(out, ", %u real frames lost", figures->lost_real_frames);
 	fprintf(out, "\n  %-18s %.2f Hz for %.2f s\n", "displayed", displayed_hz(figures),
-	        (double)figures->duration_ns / 1e9);
+			(double)figures->duration_ns / 1e9);
 	fprintf(out, "  %-18s %.1f ms median, %.1f ms at 99%%, for each real frame with its in-betweens\n", "engine",
-	        figures_percentile(figures->engine_ms, figures->real_frames, 50),
-	        figures_percentile(figures->engine_ms, figures->real_frames, 99));
+			figures_percentile(figures->engine_ms, figures->real_frames, 50),
+			figures_percentile(figures->engine_ms, figures->real_frames, 99));
 	print_counts(figures->passes, "passes", out);
 	print_counts(figures->left_out, "left out", out);
 	if (figures->quality.frames)
 		fprintf(out, "  %-18s PSNR %.2f dB (least %.2f), SSIM %.4f, over %u in-betweens with truth\n", "quality",
-		        figures->quality.psnr, figures->quality.psnr_min, figures->quality.ssim, figures->quality.frames);
+				figures->quality.psnr, figures->quality.psnr_min, figures->quality.ssim, figures->quality.frames);
 	else
 		fprintf(out, "  %-18s not scored: no in-between had a recorded frame of its moment\n", "quality");
 }

@@ -37,9 +37,9 @@ void figures_finish(struct figures *figures);
 
 /* For an observer of player.h. *hash: XXH3 of the picture, its rows packed. */
 int figures_add_picture(struct figures *figures, const struct player_picture *picture, uint64_t hash,
-                        struct error *error);
+						struct error *error);
 int figures_add_frame(struct figures *figures, const struct player_frame *frame, const struct recorded_frames *frames,
-                      struct error *error);
+					  struct error *error);
 
 /* XXH3 64 bit of the pixels, rows packed; alpha is 255 everywhere. */
 uint64_t figures_hash(const struct picture *picture);

@@ -31,8 +31,9 @@ struct gl_context *gl_context_create(struct error *error)
 	}
 	free(made);
 	error_set(error, -ENOTSUP,
-	          "no GL context to render a scene in (%.150s; %.150s). Install Mesa: on Debian and Ubuntu "
-	          "`apt install libegl1 libgl1-mesa-dri`", why[0].text, why[1].text);
+			  "no GL context to render a scene in (%.150s; %.150s). Install Mesa: on Debian and Ubuntu "
+			  "`apt install libegl1 libgl1-mesa-dri`",
+			  why[0].text, why[1].text);
 	return NULL;
 }
 

@@ -29,9 +29,9 @@ static bool has_extension(const char *list, const char *name)
 static bool start_context(EGLDisplay display, struct egl_context *made)
 {
 	static const EGLint config_wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
-	static const EGLint context_wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-	                                        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-	                                        EGL_NONE};
+	static const EGLint context_wanted[] = {
+		EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+		EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
 	EGLint count = 0;
 	EGLConfig config = NULL;
 	if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL))
@@ -56,7 +56,7 @@ static bool start_on_gpu(const char *extensions, PFNEGLGETPLATFORMDISPLAYEXTPROC
 		return false;
 	PFNEGLQUERYDEVICESEXTPROC query_devices = (PFNEGLQUERYDEVICESEXTPROC)eglGetProcAddress("eglQueryDevicesEXT");
 	PFNEGLQUERYDEVICESTRINGEXTPROC query_string =
-	    (PFNEGLQUERYDEVICESTRINGEXTPROC)eglGetProcAddress("eglQueryDeviceStringEXT");
+		(PFNEGLQUERYDEVICESTRINGEXTPROC)eglGetProcAddress("eglQueryDeviceStringEXT");
 	EGLDeviceEXT devices[MAX_DEVICES];
 	EGLint count = 0;
 	if (!query_devices || !query_string || !query_devices(MAX_DEVICES, devices, &count))
@@ -75,7 +75,7 @@ static void *create(struct error *error)
 {
 	const char *extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
 	PFNEGLGETPLATFORMDISPLAYEXTPROC get_display =
-	    (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
+		(PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
 	struct egl_context *made = calloc(1, sizeof(*made));
 	if (!made || !extensions || !get_display) {
 		free(made);
@@ -85,7 +85,7 @@ static void *create(struct error *error)
 	if (start_on_gpu(extensions, get_display, made))
 		return made;
 	if (has_extension(extensions, "EGL_MESA_platform_surfaceless") &&
-	    start_context(get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), made))
+		start_context(get_display(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL), made))
 		return made;
 	free(made);
 	error_set(error, -ENOTSUP, "EGL gave no context: neither on a GPU nor surfaceless (EGL error 0x%x)", eglGetError());
@@ -125,10 +125,10 @@ static void *lookup(const char *name)
 }
 
 const struct gl_context_kind gl_context_egl = {
-    .name = "egl",
-    .create = create,
-    .make_current = make_current,
-    .release = release,
-    .destroy = destroy,
-    .lookup = lookup,
+	.name = "egl",
+	.create = create,
+	.make_current = make_current,
+	.release = release,
+	.destroy = destroy,
+	.lookup = lookup,
 };

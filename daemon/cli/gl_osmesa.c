@@ -44,10 +44,10 @@ static bool load(void)
 		const char *name;
 		void *target;
 	} functions[] = {
-	    {"OSMesaCreateContextAttribs", &osmesa.create_context},
-	    {"OSMesaDestroyContext", &osmesa.destroy_context},
-	    {"OSMesaMakeCurrent", &osmesa.make_current},
-	    {"OSMesaGetProcAddress", &osmesa.get_proc_address},
+		{"OSMesaCreateContextAttribs", &osmesa.create_context},
+		{"OSMesaDestroyContext", &osmesa.destroy_context},
+		{"OSMesaMakeCurrent", &osmesa.make_current},
+		{"OSMesaGetProcAddress", &osmesa.get_proc_address},
 	};
 	for (unsigned i = 0; i < 4; i++) {
 		void *function = dlsym(osmesa.library, functions[i].name);
@@ -78,8 +78,15 @@ static void destroy(void *context)
 
 static void *create(struct error *error)
 {
-	static const int wanted[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-	                             OSMESA_CONTEXT_MAJOR_VERSION, 3, OSMESA_CONTEXT_MINOR_VERSION, 3, 0};
+	static const int wanted[] = {OSMESA_FORMAT,
+								 OSMESA_RGBA,
+								 OSMESA_PROFILE,
+								 OSMESA_CORE_PROFILE,
+								 OSMESA_CONTEXT_MAJOR_VERSION,
+								 3,
+								 OSMESA_CONTEXT_MINOR_VERSION,
+								 3,
+								 0};
 	struct osmesa_context *made = calloc(1, sizeof(*made));
 	if (!made || !load()) {
 		free(made);
@@ -102,10 +109,10 @@ static void *lookup(const char *name)
 }
 
 const struct gl_context_kind gl_context_osmesa = {
-    .name = "osmesa",
-    .create = create,
-    .make_current = make_current,
-    .release = release,
-    .destroy = destroy,
-    .lookup = lookup,
+	.name = "osmesa",
+	.create = create,
+	.make_current = make_current,
+	.release = release,
+	.destroy = destroy,
+	.lookup = lookup,
 };

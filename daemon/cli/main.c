@@ -30,7 +30,7 @@ static const struct verb verbs[] = {
 static void print_help(FILE *out)
 {
 	fprintf(out, "usage: pursuit VERB [arguments]\n\n"
-	             "Pursuit turns 30 to 60 rendered frames a second into a steady 120 Hz picture.\n\nverbs\n");
+				 "Pursuit turns 30 to 60 rendered frames a second into a steady 120 Hz picture.\n\nverbs\n");
 	for (const struct verb *verb = verbs; verb->name; verb++)
 		fprintf(out, "  %-10s  %s\n", verb->name, verb->help);
 	fprintf(out, "\n`pursuit VERB --help` explains one, with examples. `pursuit --version` names the version.\n");
@@ -48,7 +48,7 @@ static int unknown_verb(const char *name)
 		}
 	}
 	fprintf(stderr, "pursuit: there is no verb %s%s%s%s\nTry `pursuit --help`.\n", name,
-	        nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
+			nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
 	return STATUS_USAGE;
 }
 

@@ -35,7 +35,7 @@ static int canvas_fit(struct canvas *canvas, const struct engine *engine, struct
 }
 
 static int canvas_render(struct canvas *canvas, struct engine *engine, const struct showing *showing,
-                         struct error *error)
+						 struct error *error)
 {
 	const struct engine_request request = {showing->show, showing->phase};
 	struct engine_image image = {canvas->data, canvas->picture.stride};
@@ -50,7 +50,7 @@ static double now_ms(void)
 }
 
 static int show_picture(struct player *player, struct canvas *canvas, const struct beginning *beginning,
-                        const struct showing *showing, struct error *error)
+						const struct showing *showing, struct error *error)
 {
 	struct player_picture picture = {.beginning = beginning, .showing = showing, .shown = canvas->picture};
 	if (player->truth.get && showing->show == ENGINE_SHOW_IN_BETWEEN && !showing->repeat)
@@ -59,7 +59,7 @@ static int show_picture(struct player *player, struct canvas *canvas, const stru
 }
 
 static int play_beginning(struct player *player, struct canvas *canvas, const struct beginning *beginning,
-                          const struct frame *frame, struct error *error)
+						  const struct frame *frame, struct error *error)
 {
 	double start = now_ms();
 	int result = engine_begin(player->engine, frame, &beginning->params, error);
@@ -116,7 +116,7 @@ struct recorded_truth {
 };
 
 struct recorded_truth *recorded_truth_create(struct recording_reader *reader, const struct recorded_frames *frames,
-                                             const struct engine_params *params, struct error *error)
+											 const struct engine_params *params, struct error *error)
 {
 	struct recorded_truth *truth = calloc(1, sizeof(*truth));
 	if (!truth) {
@@ -158,7 +158,7 @@ static int make_truth(struct recorded_truth *truth, int64_t index, struct error 
 }
 
 static const struct picture *get_recorded(void *context, const struct beginning *beginning,
-                                          const struct showing *showing)
+										  const struct showing *showing)
 {
 	struct recorded_truth *truth = context;
 	struct error error;

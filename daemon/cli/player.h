@@ -57,7 +57,7 @@ int player_run(struct player *player, struct error *error);
  * displayed plain. Uses slot 2 of the reader. */
 struct recorded_truth;
 struct recorded_truth *recorded_truth_create(struct recording_reader *reader, const struct recorded_frames *frames,
-                                             const struct engine_params *params, struct error *error);
+											 const struct engine_params *params, struct error *error);
 void recorded_truth_destroy(struct recorded_truth **truth);
 struct player_truth recorded_truth_source(struct recorded_truth *truth);
 

@@ -59,10 +59,11 @@ static int keep_motion(struct motion_step *step, const struct frame *frame, stru
 /* Does this frame continue a chain that began with the other? */
 static bool continues(const struct frame *first, const struct frame *next)
 {
-	int a = frame_find_plane(&first->header, PURSUIT_ROLE_COLOR), b = frame_find_plane(&next->header, PURSUIT_ROLE_COLOR);
+	int a = frame_find_plane(&first->header, PURSUIT_ROLE_COLOR),
+		b = frame_find_plane(&next->header, PURSUIT_ROLE_COLOR);
 	return next->header.motion_kind == first->header.motion_kind &&
-	       next->header.planes[b].width == first->header.planes[a].width &&
-	       next->header.planes[b].height == first->header.planes[a].height;
+		   next->header.planes[b].width == first->header.planes[a].width &&
+		   next->header.planes[b].height == first->header.planes[a].height;
 }
 
 static int make_room(struct real_frames *real, uint32_t steps, struct error *error)
@@ -80,7 +81,7 @@ static int make_room(struct real_frames *real, uint32_t steps, struct error *err
 
 /* Loads the frames after the first of the chain into chain[1..]; *count is how many there are. */
 static int load_chain(struct real_frames *real, const struct beginning *beginning, uint32_t span, uint32_t wanted,
-                      const struct frame **chain, uint32_t *count, struct error *error)
+					  const struct frame **chain, uint32_t *count, struct error *error)
 {
 	const struct recorded_frames *frames = real->frames;
 	int64_t start = (int64_t)frames->frames[beginning->frame].position;
@@ -101,7 +102,7 @@ static int load_chain(struct real_frames *real, const struct beginning *beginnin
 }
 
 static int compose(struct real_frames *real, struct frame *frame, const struct frame **chain, uint32_t count,
-                   struct error *error)
+				   struct error *error)
 {
 	int index = frame_find_plane(&frame->header, PURSUIT_ROLE_MOTION);
 	struct pursuit_plane *plane = &frame->header.planes[index];
@@ -136,7 +137,7 @@ static bool cut_before(const struct real_frames *real, const struct beginning *b
 }
 
 int real_frames_load(struct real_frames *real, const struct beginning *beginning, struct frame *frame,
-                     struct error *error)
+					 struct error *error)
 {
 	uint64_t place = real->frames->frames[beginning->frame].index;
 	int result = recording_reader_frame(real->reader, place, 0, frame, NULL, error);

@@ -31,9 +31,10 @@ struct real_frames {
 	size_t motion_capacity;
 };
 
-/* The real frame of a beginning, ready for engine_begin(), valid until the next call. 0 or a negative errno with a sentence. */
+/* The real frame of a beginning, ready for engine_begin(), valid until the next call. 0 or a negative errno with a
+ * sentence. */
 int real_frames_load(struct real_frames *real, const struct beginning *beginning, struct frame *frame,
-                     struct error *error);
+					 struct error *error);
 void real_frames_finish(struct real_frames *real);
 
 #endif

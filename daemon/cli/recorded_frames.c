@@ -142,7 +142,7 @@ bool recorded_frames_rate(const struct recorded_frames *frames, struct arg_rate 
 	} else {
 		bool broadcast = fabs(exact - whole * 1000 / 1001) < 2e-4 * whole;
 		*rate = broadcast ? (struct arg_rate){(uint64_t)whole * 1000, 1001}
-		                  : (struct arg_rate){(uint64_t)llround(exact * 1000), 1000};
+						  : (struct arg_rate){(uint64_t)llround(exact * 1000), 1000};
 	}
 	return true;
 }

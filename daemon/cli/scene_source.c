@@ -44,7 +44,7 @@ static bool allocate(struct scene_source *source)
 	if (source->params.object_id)
 		source->pixels.object_id = malloc(pixels * sizeof(uint32_t));
 	return source->pixels.color && source->pixels.ui && source->pixels.depth && motion &&
-	       (!source->params.object_id || source->pixels.object_id);
+		   (!source->params.object_id || source->pixels.object_id);
 }
 
 struct scene_source *scene_source_create(const struct scene_source_params *params, struct error *error)
@@ -65,7 +65,7 @@ struct scene_source *scene_source_create(const struct scene_source_params *param
 	source->context = gl_context_create(error);
 	if (source->context) {
 		source->scene = scene_create(params->scene, params->size.width, params->size.height,
-		                             gl_context_get_lookup(source->context), error->text, sizeof(error->text));
+									 gl_context_get_lookup(source->context), error->text, sizeof(error->text));
 		if (source->scene && allocate(source))
 			return source;
 		if (source->scene)
@@ -107,25 +107,25 @@ static void add_plane(struct pursuit_frame_header *header, uint32_t role, uint32
 }
 
 static void describe(const struct scene_source *source, uint64_t index, const struct scene_camera *camera, bool has_ui,
-                     struct pursuit_frame_header *header)
+					 struct pursuit_frame_header *header)
 {
 	const struct scene_source_params *params = &source->params;
 	uint64_t time = scene_source_time(&params->rate, index);
 	*header = (struct pursuit_frame_header){
-	    .frame_id = index + 1,
-	    .time_ns = SCENE_SOURCE_EPOCH_NS + time,
-	    .submit_ns = SCENE_SOURCE_EPOCH_NS + time,
-	    .real_interval_ns =
-	        index ? time - scene_source_time(&params->rate, index - 1) : scene_source_time(&params->rate, 1),
-	    .flags = PURSUIT_FRAME_MATRICES | (camera->cut && index ? PURSUIT_FRAME_CUT : 0u),
-	    .motion_kind = params->forward ? PURSUIT_MOTION_FORWARD : PURSUIT_MOTION_BACKWARD,
-	    .depth_kind = PURSUIT_DEPTH_DEVICE,
-	    .near_distance = camera->near_distance,
-	    .far_distance = camera->far_distance,
+		.frame_id = index + 1,
+		.time_ns = SCENE_SOURCE_EPOCH_NS + time,
+		.submit_ns = SCENE_SOURCE_EPOCH_NS + time,
+		.real_interval_ns =
+			index ? time - scene_source_time(&params->rate, index - 1) : scene_source_time(&params->rate, 1),
+		.flags = PURSUIT_FRAME_MATRICES | (camera->cut && index ? PURSUIT_FRAME_CUT : 0u),
+		.motion_kind = params->forward ? PURSUIT_MOTION_FORWARD : PURSUIT_MOTION_BACKWARD,
+		.depth_kind = PURSUIT_DEPTH_DEVICE,
+		.near_distance = camera->near_distance,
+		.far_distance = camera->far_distance,
 	};
 	memcpy(header->view_projection, camera->view_projection, sizeof(header->view_projection));
 	memcpy(header->previous_view_projection, camera->previous_view_projection,
-	       sizeof(header->previous_view_projection));
+		   sizeof(header->previous_view_projection));
 	add_plane(header, PURSUIT_ROLE_COLOR, params->color_format, &params->size);
 	add_plane(header, PURSUIT_ROLE_DEPTH, params->depth_format, &params->size);
 	add_plane(header, PURSUIT_ROLE_MOTION, params->motion_format, &params->size);
@@ -158,7 +158,7 @@ static void write_row(const struct scene_source *source, const struct pursuit_pl
 }
 
 static bool render(struct scene_source *source, const struct scene_request *request, bool *has_ui,
-                   struct scene_camera *camera)
+				   struct scene_camera *camera)
 {
 	struct scene_textures textures;
 	if (!gl_context_make_current(source->context))
@@ -170,7 +170,7 @@ static bool render(struct scene_source *source, const struct scene_request *requ
 }
 
 bool scene_source_render(struct scene_source *source, double time, double time_previous,
-                         struct scene_textures *textures, struct scene_camera *camera)
+						 struct scene_textures *textures, struct scene_camera *camera)
 {
 	const struct scene_request request = {.time = time, .time_previous = time_previous, .time_next = time};
 	return gl_context_make_current(source->context) && scene_render(source->scene, &request, textures, camera);
@@ -234,7 +234,7 @@ bool scene_source_truth(struct scene_source *source, double time, uint8_t *pictu
 	if (has_ui)
 		for (uint32_t y = 0; y < source->params.size.height; y++)
 			pixel_composite(picture + 4 * (size_t)y * source->params.size.width,
-			                source->pixels.ui + 4 * (size_t)y * source->params.size.width, source->params.size.width);
+							source->pixels.ui + 4 * (size_t)y * source->params.size.width, source->params.size.width);
 	for (size_t i = 0; i < pixels; i++)
 		picture[4 * i + 3] = 255;
 	return true;

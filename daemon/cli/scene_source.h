@@ -40,7 +40,8 @@ void scene_source_destroy(struct scene_source **source);
 /* Real frame `index` (id index + 1). Its planes belong to the source, valid until the next call. False: GL failed. */
 bool scene_source_frame(struct scene_source *source, uint64_t index, struct frame *frame);
 
-/* The truth at a moment, in seconds: BGRA8 with the UI over it, packed rows, alpha 255, into width x height x 4 bytes. */
+/* The truth at a moment, in seconds: BGRA8 with the UI over it, packed rows, alpha 255, into width x height x 4 bytes.
+ */
 bool scene_source_truth(struct scene_source *source, double time, uint8_t *picture);
 
 /*
@@ -48,7 +49,7 @@ bool scene_source_truth(struct scene_source *source, double time, uint8_t *pictu
  * for a reader of its own (the client shim's), the context current.
  */
 bool scene_source_render(struct scene_source *source, double time, double time_previous,
-                         struct scene_textures *textures, struct scene_camera *camera);
+						 struct scene_textures *textures, struct scene_camera *camera);
 scene_gl_lookup scene_source_lookup(const struct scene_source *source);
 
 /* GL_RENDERER of the context; of a CPU renderer? */

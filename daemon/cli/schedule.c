@@ -27,8 +27,8 @@ static void *grow(void *array, uint32_t count, uint32_t *capacity, size_t size)
 
 int schedule_add_beginning(struct schedule *schedule, const struct beginning *beginning, struct error *error)
 {
-	struct beginning *grown = grow(schedule->beginnings, schedule->beginning_count, &schedule->beginning_capacity,
-	                               sizeof(*grown));
+	struct beginning *grown =
+		grow(schedule->beginnings, schedule->beginning_count, &schedule->beginning_capacity, sizeof(*grown));
 	if (!grown)
 		return error_set(error, -ENOMEM, "out of memory");
 	schedule->beginnings = grown;
@@ -40,8 +40,8 @@ int schedule_add_beginning(struct schedule *schedule, const struct beginning *be
 
 int schedule_add_showing(struct schedule *schedule, const struct showing *showing, struct error *error)
 {
-	struct showing *grown = grow(schedule->showings, schedule->showing_count, &schedule->showing_capacity,
-	                             sizeof(*grown));
+	struct showing *grown =
+		grow(schedule->showings, schedule->showing_count, &schedule->showing_capacity, sizeof(*grown));
 	if (!grown)
 		return error_set(error, -ENOMEM, "out of memory");
 	schedule->showings = grown;
@@ -65,9 +65,9 @@ struct play {
 	const struct schedule_params *params;
 	struct pacer pacer;
 	uint64_t tolerance_ns;
-	uint32_t next;      /* the real frame that the pacer is told of next; count: none */
-	uint32_t told;      /* told of last */
-	uint32_t shown;     /* index of the frame shown last */
+	uint32_t next;  /* the real frame that the pacer is told of next; count: none */
+	uint32_t told;  /* told of last */
+	uint32_t shown; /* index of the frame shown last */
 	uint32_t real_frames;
 	bool any;
 };
@@ -81,7 +81,7 @@ static uint32_t next_real(const struct recorded_frames *frames, uint32_t every, 
 	for (uint32_t i = from > first ? from : first; i < frames->count; i++) {
 		const struct recorded_frame *frame = &frames->frames[i];
 		if (!(frame->flags & PURSUIT_FRAME_TRUTH_ONLY) &&
-		    (frame->position - frames->frames[first].position) % every == 0)
+			(frame->position - frames->frames[first].position) % every == 0)
 			return i;
 	}
 	return frames->count;
@@ -106,10 +106,10 @@ static void tell(struct play *play)
 {
 	const struct recorded_frame *frame = &play->frames->frames[play->next];
 	const struct pacer_frame told = {
-	    .frame_id = (uint64_t)play->next + 1,
-	    .time_ns = frame->time_ns,
-	    .interval_ns = interval_of(play, play->next),
-	    .intake_ns = frame->time_ns,
+		.frame_id = (uint64_t)play->next + 1,
+		.time_ns = frame->time_ns,
+		.interval_ns = interval_of(play, play->next),
+		.intake_ns = frame->time_ns,
 	};
 	pacer_add_frame(&play->pacer, &told);
 	play->told = play->next;
@@ -125,21 +125,21 @@ static int show(struct play *play, const struct pacer_decision *decision, uint64
 	play->shown = frame;
 	if (first) {
 		const struct beginning beginning = {
-		    .frame = frame,
-		    .span = play->params->every,
-		    .params = {decision->n, decision->last_phase, decision->interval_ns},
+			.frame = frame,
+			.span = play->params->every,
+			.params = {decision->n, decision->last_phase, decision->interval_ns},
 		};
 		int result = schedule_add_beginning(play->schedule, &beginning, error);
 		if (result < 0)
 			return result;
 	}
 	const struct showing showing = {
-	    .number = number,
-	    .show = decision->show == PACER_IN_BETWEEN ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL,
-	    .repeat = decision->show == PACER_REPEAT && !first,
-	    .phase = decision->phase,
-	    .moment_ns = decision->target_ns,
-	    .truth = recorded_frames_find(play->frames, decision->target_ns, play->tolerance_ns),
+		.number = number,
+		.show = decision->show == PACER_IN_BETWEEN ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL,
+		.repeat = decision->show == PACER_REPEAT && !first,
+		.phase = decision->phase,
+		.moment_ns = decision->target_ns,
+		.truth = recorded_frames_find(play->frames, decision->target_ns, play->tolerance_ns),
 	};
 	return schedule_add_showing(play->schedule, &showing, error);
 }
@@ -164,7 +164,7 @@ static uint64_t skip_pause(const struct play *play, uint64_t vblank)
 }
 
 int schedule_play(struct schedule *schedule, const struct recorded_frames *frames, const struct schedule_params *params,
-                  struct error *error)
+				  struct error *error)
 {
 	struct play play = {.schedule = schedule, .frames = frames, .params = params};
 	uint64_t period_ns = UINT64_C(1000000000) * params->refresh.denominator / params->refresh.numerator;
@@ -174,11 +174,11 @@ int schedule_play(struct schedule *schedule, const struct recorded_frames *frame
 	if (play.next >= frames->count)
 		return error_set(error, -ENODATA, "no frame of this recording can be a real one: all are truth only");
 	pacer_init(&play.pacer, &(struct pacer_params){
-	                            .refresh_numerator = params->refresh.numerator,
-	                            .refresh_denominator = params->refresh.denominator,
-	                            .epoch_ns = frames->frames[play.next].time_ns,
-	                            .fixed_delay = true,
-	                        });
+								.refresh_numerator = params->refresh.numerator,
+								.refresh_denominator = params->refresh.denominator,
+								.epoch_ns = frames->frames[play.next].time_ns,
+								.fixed_delay = true,
+							});
 	uint64_t number = 0;
 	for (uint64_t vblank = 0;; vblank++) {
 		if (play.any)
@@ -203,7 +203,7 @@ int schedule_play(struct schedule *schedule, const struct recorded_frames *frame
 /* ---- each frame predicts the next ---- */
 
 int schedule_predict(struct schedule *schedule, const struct recorded_frames *frames,
-                     const struct schedule_params *params, struct error *error)
+					 const struct schedule_params *params, struct error *error)
 {
 	*schedule = (struct schedule){0};
 	for (uint32_t i = 0; i + 1 < frames->count; i++) {
@@ -211,16 +211,16 @@ int schedule_predict(struct schedule *schedule, const struct recorded_frames *fr
 		if ((frame->flags & PURSUIT_FRAME_TRUTH_ONLY) || !frame->motion || next->position != frame->position + 1)
 			continue;
 		const struct beginning beginning = {
-		    .frame = i,
-		    .span = 1,
-		    .params = {2, 1.0, next->time_ns - frame->time_ns},
+			.frame = i,
+			.span = 1,
+			.params = {2, 1.0, next->time_ns - frame->time_ns},
 		};
 		const struct showing showing = {
-		    .number = params->numbered ? next->frame_id - 1 + params->number_offset : next->index,
-		    .show = ENGINE_SHOW_IN_BETWEEN,
-		    .phase = 1.0,
-		    .moment_ns = next->time_ns,
-		    .truth = (int64_t)i + 1,
+			.number = params->numbered ? next->frame_id - 1 + params->number_offset : next->index,
+			.show = ENGINE_SHOW_IN_BETWEEN,
+			.phase = 1.0,
+			.moment_ns = next->time_ns,
+			.truth = (int64_t)i + 1,
 		};
 		int result = schedule_add_beginning(schedule, &beginning, error);
 		if (result == 0)

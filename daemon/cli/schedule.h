@@ -21,7 +21,7 @@ struct recorded_frame {
 	uint64_t index;    /* in the reader */
 	uint64_t position; /* counts the frames of the client from the first one of the recording, lost ones included */
 	uint64_t frame_id;
-	uint64_t time_ns;  /* the moment that it depicts, made to rise */
+	uint64_t time_ns;                         /* the moment that it depicts, made to rise */
 	uint64_t interval_ns, motion_interval_ns; /* as declared, 0 unknown */
 	uint32_t flags;
 	uint32_t width, height;
@@ -50,16 +50,16 @@ bool recorded_frames_rate(const struct recorded_frames *frames, struct arg_rate 
 struct showing {
 	uint64_t number; /* it is written, hashed and compared under this one */
 	enum engine_show show;
-	bool repeat;     /* the same picture as the showing before */
+	bool repeat; /* the same picture as the showing before */
 	double phase;
 	uint64_t moment_ns; /* that it depicts */
-	int64_t truth;   /* index in recorded_frames of that moment, -1: none */
+	int64_t truth;      /* index in recorded_frames of that moment, -1: none */
 };
 
 /* One real frame that is displayed, and its showings. */
 struct beginning {
-	uint32_t frame;     /* index in recorded_frames */
-	uint32_t span;      /* recorded frames that its motion must span, 1 or more */
+	uint32_t frame; /* index in recorded_frames */
+	uint32_t span;  /* recorded frames that its motion must span, 1 or more */
 	struct engine_begin_params params;
 	uint32_t first_showing, showing_count;
 };
@@ -74,17 +74,17 @@ struct schedule {
 };
 
 struct schedule_params {
-	uint32_t every;          /* only each such frame is real; 1: all */
+	uint32_t every; /* only each such frame is real; 1: all */
 	struct arg_rate refresh;
-	bool numbered;           /* predictions: a recorded frame's number is its id - 1 + number_offset; else its index */
+	bool numbered; /* predictions: a recorded frame's number is its id - 1 + number_offset; else its index */
 	uint64_t number_offset;
 };
 
 /* 0, -ENOMEM or -ENODATA (no frame can be real) with a sentence. */
 int schedule_play(struct schedule *schedule, const struct recorded_frames *frames, const struct schedule_params *params,
-                  struct error *error);
+				  struct error *error);
 int schedule_predict(struct schedule *schedule, const struct recorded_frames *frames,
-                     const struct schedule_params *params, struct error *error);
+					 const struct schedule_params *params, struct error *error);
 void schedule_finish(struct schedule *schedule);
 
 /* For those who make their own. -ENOMEM with a sentence. */

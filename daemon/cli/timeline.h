@@ -41,6 +41,6 @@ struct timeline_drawing {
 };
 
 int timeline_write_svg(const struct timeline *timeline, const struct timeline_drawing *drawing, const char *path,
-                       struct error *error);
+					   struct error *error);
 
 #endif

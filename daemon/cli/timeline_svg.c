@@ -20,8 +20,8 @@
 #define HEAD 92
 
 static const char *const colors[TIMELINE_SHOWS] = {"#1f4e8c", "#8db8e8", "#c9c9c9", "#e69f00", "#c0392b"};
-static const char *const legends[TIMELINE_SHOWS] = {
-    "real frame", "in-between", "repeat, as intended", "plain: its in-between was late", "late: the old picture stayed"};
+static const char *const legends[TIMELINE_SHOWS] = {"real frame", "in-between", "repeat, as intended",
+													"plain: its in-between was late", "late: the old picture stayed"};
 
 static double margin_ms(const struct timeline_row *row)
 {
@@ -47,7 +47,8 @@ static void text(FILE *out, double x, double y, const char *style, const char *w
 
 static void box(FILE *out, double x, double y, double width, double height, const char *color)
 {
-	fprintf(out, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"%s\"/>\n", x, y, width, height, color);
+	fprintf(out, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"%s\"/>\n", x, y, width, height,
+			color);
 }
 
 static void draw_head(FILE *out, const struct timeline *timeline, const struct timeline_drawing *drawing)
@@ -65,7 +66,7 @@ static void draw_head(FILE *out, const struct timeline *timeline, const struct t
 		x += 60 + 7.2 * (double)strlen(words);
 	}
 	snprintf(words, sizeof(words), "counted over the last %u vblanks (%.1f s)", timeline->count,
-	         timeline->count / drawing->refresh_hz);
+			 timeline->count / drawing->refresh_hz);
 	text(out, 20, 82, "fill=\"#666\"", words);
 }
 
@@ -79,7 +80,8 @@ static double draw_scale(FILE *out, double y, double height, double most_ms)
 	for (double ms = 0; ms <= most_ms; ms += step) {
 		char words[32];
 		double at = y + height - ms / most_ms * height;
-		fprintf(out, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\" stroke=\"#ddd\"/>\n", LEFT, at, LEFT + WIDTH, at);
+		fprintf(out, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\" stroke=\"#ddd\"/>\n", LEFT, at, LEFT + WIDTH,
+				at);
 		snprintf(words, sizeof(words), "%.0f ms", ms);
 		text(out, LEFT - 6, at + 4, "text-anchor=\"end\" fill=\"#666\"", words);
 	}
@@ -123,7 +125,7 @@ static void draw_overview(FILE *out, const struct timeline *timeline, double y)
 			box(out, LEFT + column * width, y + OVERVIEW_HEIGHT - 26, width > 1.5 ? width : 1.5, 10, "#e69f00");
 	}
 	text(out, LEFT, y + OVERVIEW_HEIGHT + 4, "fill=\"#666\"",
-	     "how long before its vblank the latest picture of each moment was ready; marks below: a late one");
+		 "how long before its vblank the latest picture of each moment was ready; marks below: a late one");
 }
 
 static void draw_cell(FILE *out, const struct timeline_row *row, const struct timeline_row *before, double x, double y)
@@ -133,14 +135,15 @@ static void draw_cell(FILE *out, const struct timeline_row *row, const struct ti
 	if (row->show == TIMELINE_REAL || row->show == TIMELINE_IN_BETWEEN) {
 		snprintf(words, sizeof(words), "%.2f", row->phase);
 		text(out, x + CELL / 2.0, y + 17,
-		     row->show == TIMELINE_REAL ? "font-size=\"8\" text-anchor=\"middle\" fill=\"white\""
-		                                : "font-size=\"8\" text-anchor=\"middle\" fill=\"#123\"",
-		     words);
+			 row->show == TIMELINE_REAL ? "font-size=\"8\" text-anchor=\"middle\" fill=\"white\""
+										: "font-size=\"8\" text-anchor=\"middle\" fill=\"#123\"",
+			 words);
 	}
 	if (before && before->frame_id == row->frame_id)
 		return;
 	snprintf(words, sizeof(words), "%" PRIu64, row->frame_id);
-	fprintf(out, "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#444\"/>\n", x, y - 14, x, y + LANE_HEIGHT);
+	fprintf(out, "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" stroke=\"#444\"/>\n", x, y - 14, x,
+			y + LANE_HEIGHT);
 	text(out, x + 3, y - 4, "font-size=\"9\" fill=\"#444\"", words);
 }
 
@@ -154,7 +157,8 @@ static void draw_margin(FILE *out, const struct timeline_row *row, double x, dou
 	box(out, x + 4, margin > 0 ? zero - height : zero, CELL - 8, height, margin > 0 ? colors[row->show] : "#c0392b");
 }
 
-static void draw_strip(FILE *out, const struct timeline *timeline, uint32_t first, uint32_t count, double y, double most)
+static void draw_strip(FILE *out, const struct timeline *timeline, uint32_t first, uint32_t count, double y,
+					   double most)
 {
 	double zero = y + 30 + LANE_HEIGHT + 12 + MARGIN_HEIGHT;
 	char words[64];
@@ -176,7 +180,7 @@ static void draw_strip(FILE *out, const struct timeline *timeline, uint32_t firs
 }
 
 int timeline_write_svg(const struct timeline *timeline, const struct timeline_drawing *drawing, const char *path,
-                       struct error *error)
+					   struct error *error)
 {
 	FILE *out = fopen(path, "w");
 	if (!out)
@@ -184,9 +188,9 @@ int timeline_write_svg(const struct timeline *timeline, const struct timeline_dr
 	uint32_t strips = (drawing->detail_count + PER_STRIP - 1) / PER_STRIP;
 	double height = HEAD + OVERVIEW_HEIGHT + 40 + strips * (STRIP_HEIGHT + 20.0);
 	fprintf(out,
-	        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%.0f\" font-family=\"sans-serif\" "
-	        "font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
-	        LEFT + WIDTH + 40, height);
+			"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%.0f\" font-family=\"sans-serif\" "
+			"font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" fill=\"white\"/>\n",
+			LEFT + WIDTH + 40, height);
 	draw_head(out, timeline, drawing);
 	draw_overview(out, timeline, HEAD + 10);
 	double most = largest_margin(timeline, drawing->detail_first, drawing->detail_count);
@@ -194,7 +198,7 @@ int timeline_write_svg(const struct timeline *timeline, const struct timeline_dr
 		uint32_t first = drawing->detail_first + i * PER_STRIP;
 		uint32_t left = drawing->detail_first + drawing->detail_count - first;
 		draw_strip(out, timeline, first, left < PER_STRIP ? left : PER_STRIP,
-		           HEAD + OVERVIEW_HEIGHT + 40 + i * (STRIP_HEIGHT + 20.0), most);
+				   HEAD + OVERVIEW_HEIGHT + 40 + i * (STRIP_HEIGHT + 20.0), most);
 	}
 	fprintf(out, "</svg>\n");
 	bool wrong = ferror(out) != 0;

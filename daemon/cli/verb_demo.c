@@ -46,7 +46,7 @@ struct demo {
 	struct demo_daemon daemon;
 	struct demo_client *client;
 	uint64_t epoch_ns;
-	json_t *status;         /* the daemon's at the end of the run, before the burst */
+	json_t *status; /* the daemon's at the end of the run, before the burst */
 	json_t *client_figures;
 	struct timeline timeline;
 	struct demo_score score;
@@ -55,27 +55,27 @@ struct demo {
 static bool read_options(struct demo_options *options, int argc, char **argv, int *status)
 {
 	const struct arg_row rows[] = {
-	    {"scene", ARG_TEXT, &options->scene, 0, 0, NULL, "NAME", "what the client renders (colonnade)"},
-	    {"seconds", ARG_REAL, &options->seconds, 0.5, 86400, NULL, "S", "how long (60); Ctrl-C ends it early"},
-	    {"size", ARG_SIZE, &options->size, 0, 0, NULL, "WxH", "of the picture; 640x360 on a CPU, 1920x1080 on a GPU"},
-	    {"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F", "frames that the client renders a second (60)"},
-	    {"out", ARG_TEXT, &options->out, 0, 0, NULL, "DIR", "where report, time line and contact sheet go (out-demo)"},
-	    {"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print report.json on stdout instead of the summary"},
-	    {NULL},
+		{"scene", ARG_TEXT, &options->scene, 0, 0, NULL, "NAME", "what the client renders (colonnade)"},
+		{"seconds", ARG_REAL, &options->seconds, 0.5, 86400, NULL, "S", "how long (60); Ctrl-C ends it early"},
+		{"size", ARG_SIZE, &options->size, 0, 0, NULL, "WxH", "of the picture; 640x360 on a CPU, 1920x1080 on a GPU"},
+		{"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F", "frames that the client renders a second (60)"},
+		{"out", ARG_TEXT, &options->out, 0, 0, NULL, "DIR", "where report, time line and contact sheet go (out-demo)"},
+		{"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print report.json on stdout instead of the summary"},
+		{NULL},
 	};
 	const struct args args = {
-	    .verb = VERB,
-	    .usage = "[options]",
-	    .summary = "Starts a daemon of its own and a client that renders a built-in scene in real time over shared\n"
-	               "memory, then leaves in DIR report.json, timeline.svg (what each vblank showed, and how early it\n"
-	               "was ready), contact.png (real frame, in-between, truth and error side by side) and burst.pursuit,\n"
-	               "the recording that was scored. Settings given here are the daemon's.",
-	    .examples = "  pursuit demo\n"
-	                "  pursuit demo --scene tower --seconds 10 --size 640x360 --fps 40 --method hold --out out-hold\n"
-	                "      40 frames a second become 120 pictures, none of them extrapolated: the yardstick\n",
-	    .rows = rows,
-	    .settings = &options->settings,
-	    .groups = 1u << OPTION_ENGINE | 1u << OPTION_OUTPUT,
+		.verb = VERB,
+		.usage = "[options]",
+		.summary = "Starts a daemon of its own and a client that renders a built-in scene in real time over shared\n"
+				   "memory, then leaves in DIR report.json, timeline.svg (what each vblank showed, and how early it\n"
+				   "was ready), contact.png (real frame, in-between, truth and error side by side) and burst.pursuit,\n"
+				   "the recording that was scored. Settings given here are the daemon's.",
+		.examples = "  pursuit demo\n"
+					"  pursuit demo --scene tower --seconds 10 --size 640x360 --fps 40 --method hold --out out-hold\n"
+					"      40 frames a second become 120 pictures, none of them extrapolated: the yardstick\n",
+		.rows = rows,
+		.settings = &options->settings,
+		.groups = 1u << OPTION_ENGINE | 1u << OPTION_OUTPUT,
 	};
 	return args_parse(&args, argc, argv, status);
 }
@@ -143,10 +143,10 @@ static int start(struct demo *demo, struct error *error)
 	if (result < 0)
 		return result;
 	const struct demo_client_params params = {
-	    .source = demo->source,
-	    .size = demo->options.size,
-	    .rate = demo->options.rate,
-	    .socket = demo->daemon.socket,
+		.source = demo->source,
+		.size = demo->options.size,
+		.rate = demo->options.rate,
+		.socket = demo->daemon.socket,
 	};
 	demo->client = demo_client_create(&params, error);
 	return demo->client ? 0 : -EIO;
@@ -210,14 +210,14 @@ static int run(struct demo *demo, struct error *error)
 static int score(struct demo *demo, struct error *error)
 {
 	const struct demo_score_params params = {
-	    .recording = demo->recording,
-	    .timeline = &demo->timeline,
-	    .settings = &demo->options.settings,
-	    .source = demo->source,
-	    .size = demo->options.size,
-	    .epoch_ns = demo->epoch_ns,
-	    .title = demo->title,
-	    .contact = demo->contact,
+		.recording = demo->recording,
+		.timeline = &demo->timeline,
+		.settings = &demo->options.settings,
+		.source = demo->source,
+		.size = demo->options.size,
+		.epoch_ns = demo->epoch_ns,
+		.title = demo->title,
+		.contact = demo->contact,
 	};
 	return demo_score(&params, &demo->score, error);
 }
@@ -225,10 +225,10 @@ static int score(struct demo *demo, struct error *error)
 static int draw_timeline(const struct demo *demo, struct error *error)
 {
 	struct timeline_drawing drawing = {
-	    .title = demo->title,
-	    .refresh_hz = json_number_value(json_object_get(demo->status, "refresh")),
-	    .detail_first = demo->score.first_row,
-	    .detail_count = demo->score.row_count,
+		.title = demo->title,
+		.refresh_hz = json_number_value(json_object_get(demo->status, "refresh")),
+		.detail_first = demo->score.first_row,
+		.detail_count = demo->score.row_count,
 	};
 	if (drawing.detail_count == 0 || drawing.detail_count > DETAIL_ROWS)
 		drawing.detail_count = demo->timeline.count < DETAIL_ROWS ? demo->timeline.count : DETAIL_ROWS;
@@ -245,8 +245,7 @@ static json_t *make_report(const struct demo *demo)
 	json_object_set_new(report, "scene", json_string(options->scene));
 	json_object_set_new(report, "width", json_integer(options->size.width));
 	json_object_set_new(report, "height", json_integer(options->size.height));
-	json_object_set_new(report, "fps",
-	                    json_real((double)options->rate.numerator / (double)options->rate.denominator));
+	json_object_set_new(report, "fps", json_real((double)options->rate.numerator / (double)options->rate.denominator));
 	json_object_set_new(report, "settings", figures_settings_json(&options->settings));
 	json_object_set(report, "client", demo->client_figures);
 	json_object_set(report, "scored", demo->score.scored);
@@ -274,18 +273,19 @@ static void print_summary(const struct demo *demo, const json_t *report)
 	double refresh = figure(report, "refresh", NULL), vblanks = figure(report, "vblanks", NULL);
 	printf("%s\n", demo->title);
 	printf("  %.1f Hz displayed for %.1f s, %.2f%% of the vblanks on time", figure(report, "displayed_hz", NULL),
-	       refresh > 0 ? vblanks / refresh : 0, 100 * figure(report, "on_time", NULL));
+		   refresh > 0 ? vblanks / refresh : 0, 100 * figure(report, "on_time", NULL));
 	if (demo->score.quality.frames)
 		printf(", PSNR %.2f dB, SSIM %.4f", demo->score.quality.psnr, demo->score.quality.ssim);
 	printf("\n  %.0f real and %.0f in-between frames; %.0f in-betweens late, %.0f real frames lost\n",
-	       figure(report, "real_frames", NULL), figure(report, "in_between_frames", NULL),
-	       figure(report, "late_in_betweens", NULL), figure(report, "lost_real_frames", NULL));
+		   figure(report, "real_frames", NULL), figure(report, "in_between_frames", NULL),
+		   figure(report, "late_in_betweens", NULL), figure(report, "lost_real_frames", NULL));
 	printf("  engine %.1f ms median, %.1f ms at 99%% for each real frame; submit to flip %.1f ms, %.1f ms at 99%%\n",
-	       figure(report, "engine_ms", "p50"), figure(report, "engine_ms", "p99"),
-	       figure(report, "submit_to_flip_ms", "p50"), figure(report, "submit_to_flip_ms", "p99"));
+		   figure(report, "engine_ms", "p50"), figure(report, "engine_ms", "p99"),
+		   figure(report, "submit_to_flip_ms", "p50"), figure(report, "submit_to_flip_ms", "p99"));
 	const json_t *client = json_object_get(report, "client");
 	printf("  client: rendering %.1f ms, submit %.0f us (medians), %.0f of its frames skipped\n",
-	       figure(client, "render_ms", "p50"), figure(client, "submit_us", "p50"), figure(client, "skipped_frames", NULL));
+		   figure(client, "render_ms", "p50"), figure(client, "submit_us", "p50"),
+		   figure(client, "skipped_frames", NULL));
 	printf("  %s, %s, %s, %s\n", demo->report, demo->svg, demo->contact, demo->recording);
 }
 
@@ -332,9 +332,9 @@ static int run_demo(struct demo *demo)
 		char refresh[40] = "";
 		settings_get(&demo->options.settings, "refresh", refresh, sizeof(refresh));
 		snprintf(demo->title, sizeof(demo->title), "%s %ux%u, %.4g frames a second to %s Hz, method %s",
-		         demo->options.scene, demo->options.size.width, demo->options.size.height,
-		         (double)demo->options.rate.numerator / (double)demo->options.rate.denominator, refresh,
-		         demo->options.settings.method);
+				 demo->options.scene, demo->options.size.width, demo->options.size.height,
+				 (double)demo->options.rate.numerator / (double)demo->options.rate.denominator, refresh,
+				 demo->options.settings.method);
 		result = run(demo, &error);
 	}
 	demo_client_destroy(&demo->client);

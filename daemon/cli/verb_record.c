@@ -20,7 +20,7 @@ static const char *const depth_formats[] = {"f32", "unorm24", "unorm16", NULL};
 static const char *const motion_formats[] = {"f16", "f32", NULL};
 
 static const uint32_t color_values[] = {PURSUIT_FORMAT_BGRA8, PURSUIT_FORMAT_RGBA8, PURSUIT_FORMAT_RGB10A2,
-                                        PURSUIT_FORMAT_RGBA16F};
+										PURSUIT_FORMAT_RGBA16F};
 static const uint32_t depth_values[] = {PURSUIT_FORMAT_DEPTH32F, PURSUIT_FORMAT_DEPTH24, PURSUIT_FORMAT_DEPTH16};
 static const uint32_t motion_values[] = {PURSUIT_FORMAT_RG16F, PURSUIT_FORMAT_RG32F};
 
@@ -38,35 +38,37 @@ struct record_options {
 static bool read_options(struct record_options *options, int argc, char **argv, int *status)
 {
 	const struct arg_row rows[] = {
-	    {"scene", ARG_TEXT, &options->scene, 0, 0, NULL, "NAME", "a built-in scene; without it, what a running daemon receives"},
-	    {"size", ARG_SIZE, &options->size, 0, 0, NULL, "WxH", "of the scene's pictures (640x360)"},
-	    {"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F", "the scene's frames a second (60)"},
-	    {"seconds", ARG_REAL, &options->seconds, 0.001, 86400, NULL, "S",
-	     "how long; a scene 2 by default, a daemon until Ctrl-C"},
-	    {"motion", ARG_CHOICE, &options->motion, 0, 0, motion_kinds, "KIND",
-	     "backward (since the frame before, the default) or forward (to the next)"},
-	    {"color-format", ARG_CHOICE, &options->color, 0, 0, color_formats, "FORMAT",
-	     "bgra8 (default), rgba8, rgb10a2 or rgba16f (linear light)"},
-	    {"depth-format", ARG_CHOICE, &options->depth, 0, 0, depth_formats, "FORMAT", "f32 (default), unorm24 or unorm16"},
-	    {"motion-format", ARG_CHOICE, &options->motion_format, 0, 0, motion_formats, "FORMAT", "f16 (default) or f32"},
-	    {"object-id", ARG_FLAG, &options->object_id, 0, 0, NULL, NULL, "a plane of object ids too"},
-	    {"socket", ARG_TEXT, &options->socket, 0, 0, NULL, "PATH", "of the daemon, where it is not the usual one"},
-	    {NULL},
+		{"scene", ARG_TEXT, &options->scene, 0, 0, NULL, "NAME",
+		 "a built-in scene; without it, what a running daemon receives"},
+		{"size", ARG_SIZE, &options->size, 0, 0, NULL, "WxH", "of the scene's pictures (640x360)"},
+		{"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F", "the scene's frames a second (60)"},
+		{"seconds", ARG_REAL, &options->seconds, 0.001, 86400, NULL, "S",
+		 "how long; a scene 2 by default, a daemon until Ctrl-C"},
+		{"motion", ARG_CHOICE, &options->motion, 0, 0, motion_kinds, "KIND",
+		 "backward (since the frame before, the default) or forward (to the next)"},
+		{"color-format", ARG_CHOICE, &options->color, 0, 0, color_formats, "FORMAT",
+		 "bgra8 (default), rgba8, rgb10a2 or rgba16f (linear light)"},
+		{"depth-format", ARG_CHOICE, &options->depth, 0, 0, depth_formats, "FORMAT",
+		 "f32 (default), unorm24 or unorm16"},
+		{"motion-format", ARG_CHOICE, &options->motion_format, 0, 0, motion_formats, "FORMAT", "f16 (default) or f32"},
+		{"object-id", ARG_FLAG, &options->object_id, 0, 0, NULL, NULL, "a plane of object ids too"},
+		{"socket", ARG_TEXT, &options->socket, 0, 0, NULL, "PATH", "of the daemon, where it is not the usual one"},
+		{NULL},
 	};
 	const struct args args = {
-	    .verb = "record",
-	    .usage = "OUT.pursuit [--scene NAME] [options]",
-	    .summary = "Writes a recording: real frames with depth and motion, bit-exact, as a file that `pursuit replay`\n"
-	               "plays. With --scene a built-in scene is rendered straight into it, without a daemon, at any\n"
-	               "rate; without --scene the frames that a running daemon receives are written.",
-	    .examples = "  pursuit record colonnade.pursuit --scene colonnade --size 1024x1024 --fps 120 --seconds 2\n"
-	                "      every second frame of it can be hidden and predicted: pursuit replay --every 2\n"
-	                "  pursuit record game.pursuit --seconds 5\n"
-	                "      what the clients of the running daemon send, for five seconds\n",
-	    .rows = rows,
-	    .positionals = &options->path,
-	    .positional_min = 1,
-	    .positional_max = 1,
+		.verb = "record",
+		.usage = "OUT.pursuit [--scene NAME] [options]",
+		.summary = "Writes a recording: real frames with depth and motion, bit-exact, as a file that `pursuit replay`\n"
+				   "plays. With --scene a built-in scene is rendered straight into it, without a daemon, at any\n"
+				   "rate; without --scene the frames that a running daemon receives are written.",
+		.examples = "  pursuit record colonnade.pursuit --scene colonnade --size 1024x1024 --fps 120 --seconds 2\n"
+					"      every second frame of it can be hidden and predicted: pursuit replay --every 2\n"
+					"  pursuit record game.pursuit --seconds 5\n"
+					"      what the clients of the running daemon send, for five seconds\n",
+		.rows = rows,
+		.positionals = &options->path,
+		.positional_min = 1,
+		.positional_max = 1,
 	};
 	return args_parse(&args, argc, argv, status);
 }
@@ -74,14 +76,14 @@ static bool read_options(struct record_options *options, int argc, char **argv, 
 static void describe(const struct record_options *options, char *info, size_t size)
 {
 	snprintf(info, size,
-	         "program=pursuit record\nscene=%s\nwidth=%u\nheight=%u\nfps=%" PRIu64 "/%" PRIu64 "\nmotion=%s\n"
-	         "number_offset=0\nscene_epoch_ns=%" PRIu64 "\n",
-	         options->scene, options->size.width, options->size.height, options->rate.numerator,
-	         options->rate.denominator, motion_kinds[options->motion], SCENE_SOURCE_EPOCH_NS);
+			 "program=pursuit record\nscene=%s\nwidth=%u\nheight=%u\nfps=%" PRIu64 "/%" PRIu64 "\nmotion=%s\n"
+			 "number_offset=0\nscene_epoch_ns=%" PRIu64 "\n",
+			 options->scene, options->size.width, options->size.height, options->rate.numerator,
+			 options->rate.denominator, motion_kinds[options->motion], SCENE_SOURCE_EPOCH_NS);
 }
 
 static int write_frames(struct scene_source *source, struct recording_writer *writer, uint64_t count,
-                        struct error *error)
+						struct error *error)
 {
 	struct progress progress = {.what = "frames"};
 	int result = 0;
@@ -101,14 +103,14 @@ static int write_frames(struct scene_source *source, struct recording_writer *wr
 static int record_scene(const struct record_options *options)
 {
 	const struct scene_source_params params = {
-	    .scene = options->scene,
-	    .size = options->size,
-	    .rate = options->rate,
-	    .forward = options->motion == 1,
-	    .color_format = color_values[options->color],
-	    .depth_format = depth_values[options->depth],
-	    .motion_format = motion_values[options->motion_format],
-	    .object_id = options->object_id,
+		.scene = options->scene,
+		.size = options->size,
+		.rate = options->rate,
+		.forward = options->motion == 1,
+		.color_format = color_values[options->color],
+		.depth_format = depth_values[options->depth],
+		.motion_format = motion_values[options->motion_format],
+		.object_id = options->object_id,
 	};
 	struct error error = {{0}}, close_error = {{0}};
 	if (!scene_exists(options->scene)) {
@@ -136,8 +138,8 @@ static int record_scene(const struct record_options *options)
 		return args_failed("record", "%s (%" PRIu64 " of %" PRIu64 " frames written)", error.text, frames, count);
 	if (closed < 0)
 		return args_failed("record", "%s", close_error.text);
-	printf("%s: %" PRIu64 " frames of %s, %ux%u, %.1f MB\n", options->path, frames, options->scene,
-	       options->size.width, options->size.height, (double)bytes / 1e6);
+	printf("%s: %" PRIu64 " frames of %s, %ux%u, %.1f MB\n", options->path, frames, options->scene, options->size.width,
+		   options->size.height, (double)bytes / 1e6);
 	return STATUS_DONE;
 }
 

@@ -45,47 +45,49 @@ struct replay {
 static bool read_options(struct replay_options *options, int argc, char **argv, int *status)
 {
 	const struct arg_row rows[] = {
-	    {"every", ARG_NUMBER, &options->every, 1, 64, NULL, "K",
-	     "only every K-th frame is real, the others are the truth that the in-betweens are scored against; motion is "
-	     "composed over the K"},
-	    {"predict", ARG_FLAG, &options->predict, 0, 0, NULL, NULL,
-	     "each frame with motion predicts the next one (phase 1, no compensation) and is scored against it"},
-	    {"refresh", ARG_RATE, &options->refresh, 0, 0, NULL, "HZ",
-	     "of the virtual display; by default 120, or with truth in the recording the rate of its frames"},
-	    {"level", ARG_NUMBER, &options->level, 0, 0, NULL, "L",
-	     "of the governor, which is fixed in a replay; 0, everything on, is the only one so far"},
-	    {"write-frames", ARG_TEXT, &options->write_frames, 0, 0, NULL, "PATTERN",
-	     "each displayed frame as PNG, such as 'f_%05d.png'; numbered from 0, predictions by the frame they predict"},
-	    {"json", ARG_TEXT, &options->json, 0, 0, NULL, "FILE", "all figures, with a row for each real frame; - is stdout"},
-	    {"fail-under", ARG_TEXT, &options->fail_under, 0, 0, NULL, "LIMITS",
-	     "exit status 1 if the mean quality is lower: psnr=34 or psnr=34,ssim=0.95"},
-	    {"write-expect", ARG_TEXT, &options->write_expect, 0, 0, NULL, "FILE", "a hash of each displayed frame, for --expect"},
-	    {"expect", ARG_TEXT, &options->expect, 0, 0, NULL, "FILE",
-	     "exit status 1 if a displayed frame is not the one of FILE (of --write-expect), or of images: a folder or a "
-	     "pattern as written by --write-frames"},
-	    {"expect-tolerance", ARG_TEXT, &options->expect_tolerance, 0, 0, NULL, "T",
-	     "for images: 2 (code values at most) or 45dB (PSNR at least); by default they are equal"},
-	    {NULL},
+		{"every", ARG_NUMBER, &options->every, 1, 64, NULL, "K",
+		 "only every K-th frame is real, the others are the truth that the in-betweens are scored against; motion is "
+		 "composed over the K"},
+		{"predict", ARG_FLAG, &options->predict, 0, 0, NULL, NULL,
+		 "each frame with motion predicts the next one (phase 1, no compensation) and is scored against it"},
+		{"refresh", ARG_RATE, &options->refresh, 0, 0, NULL, "HZ",
+		 "of the virtual display; by default 120, or with truth in the recording the rate of its frames"},
+		{"level", ARG_NUMBER, &options->level, 0, 0, NULL, "L",
+		 "of the governor, which is fixed in a replay; 0, everything on, is the only one so far"},
+		{"write-frames", ARG_TEXT, &options->write_frames, 0, 0, NULL, "PATTERN",
+		 "each displayed frame as PNG, such as 'f_%05d.png'; numbered from 0, predictions by the frame they predict"},
+		{"json", ARG_TEXT, &options->json, 0, 0, NULL, "FILE",
+		 "all figures, with a row for each real frame; - is stdout"},
+		{"fail-under", ARG_TEXT, &options->fail_under, 0, 0, NULL, "LIMITS",
+		 "exit status 1 if the mean quality is lower: psnr=34 or psnr=34,ssim=0.95"},
+		{"write-expect", ARG_TEXT, &options->write_expect, 0, 0, NULL, "FILE",
+		 "a hash of each displayed frame, for --expect"},
+		{"expect", ARG_TEXT, &options->expect, 0, 0, NULL, "FILE",
+		 "exit status 1 if a displayed frame is not the one of FILE (of --write-expect), or of images: a folder or a "
+		 "pattern as written by --write-frames"},
+		{"expect-tolerance", ARG_TEXT, &options->expect_tolerance, 0, 0, NULL, "T",
+		 "for images: 2 (code values at most) or 45dB (PSNR at least); by default they are equal"},
+		{NULL},
 	};
 	const struct args args = {
-	    .verb = VERB,
-	    .usage = "IN.pursuit [options]",
-	    .summary = "Plays a recording through the engine, headless, on a virtual clock: the same recording gives the\n"
-	               "same pictures, bit for bit, on one renderer. In-betweens that fall on the moment of a recorded\n"
-	               "frame that was not fed as a real one are scored against it.",
-	    .examples = "  pursuit replay colonnade.pursuit --every 2 --method grid --fail-under psnr=30\n"
-	                "      hide every second frame, make it from the one before, fail if that got worse\n"
-	                "  pursuit replay walk.pursuit --predict --write-frames 'p_%04d.png' --json walk.json\n"
-	                "      predict each frame from the one before it, keep pictures and figures\n"
-	                "  pursuit replay game.pursuit --write-expect game.hashes\n"
-	                "  pursuit replay game.pursuit --expect game.hashes\n"
-	                "      has any displayed frame changed since?\n",
-	    .rows = rows,
-	    .settings = &options->settings,
-	    .groups = 1u << OPTION_ENGINE,
-	    .positionals = &options->path,
-	    .positional_min = 1,
-	    .positional_max = 1,
+		.verb = VERB,
+		.usage = "IN.pursuit [options]",
+		.summary = "Plays a recording through the engine, headless, on a virtual clock: the same recording gives the\n"
+				   "same pictures, bit for bit, on one renderer. In-betweens that fall on the moment of a recorded\n"
+				   "frame that was not fed as a real one are scored against it.",
+		.examples = "  pursuit replay colonnade.pursuit --every 2 --method grid --fail-under psnr=30\n"
+					"      hide every second frame, make it from the one before, fail if that got worse\n"
+					"  pursuit replay walk.pursuit --predict --write-frames 'p_%04d.png' --json walk.json\n"
+					"      predict each frame from the one before it, keep pictures and figures\n"
+					"  pursuit replay game.pursuit --write-expect game.hashes\n"
+					"  pursuit replay game.pursuit --expect game.hashes\n"
+					"      has any displayed frame changed since?\n",
+		.rows = rows,
+		.settings = &options->settings,
+		.groups = 1u << OPTION_ENGINE,
+		.positionals = &options->path,
+		.positional_min = 1,
+		.positional_max = 1,
 	};
 	return args_parse(&args, argc, argv, status);
 }
@@ -96,8 +98,8 @@ static bool read_limits(struct replay_options *options)
 	options->least_psnr = options->least_ssim = -HUGE_VAL;
 	for (const char *at = options->fail_under; at && *at;) {
 		double *limit = strncmp(at, "psnr=", 5) == 0   ? &options->least_psnr
-		                : strncmp(at, "ssim=", 5) == 0 ? &options->least_ssim
-		                                               : NULL;
+						: strncmp(at, "ssim=", 5) == 0 ? &options->least_ssim
+													   : NULL;
 		char *end;
 		if (!limit)
 			return false;
@@ -116,7 +118,8 @@ static int check_options(struct replay_options *options, struct replay *replay)
 	if (options->predict && options->every)
 		return args_wrong(VERB, "--every and --predict are two ways to score; use one");
 	if (!read_limits(options))
-		return args_wrong(VERB, "--fail-under is %s, must be such as psnr=34 or psnr=34,ssim=0.95", options->fail_under);
+		return args_wrong(VERB, "--fail-under is %s, must be such as psnr=34 or psnr=34,ssim=0.95",
+						  options->fail_under);
 	if (options->write_frames && pattern_check("--write-frames", options->write_frames, &error) < 0)
 		return args_wrong(VERB, "%s", error.text);
 	if (options->expect_tolerance && !options->expect)
@@ -167,7 +170,7 @@ static void name_damage(const struct replay *replay)
 		fprintf(stderr, "pursuit replay: %s\n", summary->damage);
 	else if (!summary->closed)
 		fprintf(stderr, "pursuit replay: %s has no end: its writer was stopped; what is whole is played\n",
-		        replay->options->path);
+				replay->options->path);
 }
 
 static bool has_truth(const struct replay *replay)
@@ -192,8 +195,8 @@ static void find_numbering(const struct replay *replay, struct schedule_params *
 static int make_schedule(struct replay *replay, struct error *error)
 {
 	struct schedule_params params = {
-	    .every = replay->options->every ? replay->options->every : 1,
-	    .refresh = replay->options->refresh,
+		.every = replay->options->every ? replay->options->every : 1,
+		.refresh = replay->options->refresh,
 	};
 	find_numbering(replay, &params);
 	if (replay->options->predict)
@@ -245,19 +248,19 @@ static int open_all(struct replay *replay, struct error *error)
 		result = start_engines(replay, error);
 	if (result == 0 && options->write_expect)
 		result = expect_writer_open(&replay->writer, options->write_expect, engine_get_info(replay->engine),
-		                            options->settings.method, error);
+									options->settings.method, error);
 	return result;
 }
 
 static int play(struct replay *replay, struct error *error)
 {
 	struct player player = {
-	    .reader = replay->reader,
-	    .frames = &replay->frames,
-	    .schedule = &replay->schedule,
-	    .engine = replay->engine,
-	    .observer = {replay, take_picture, take_frame},
-	    .progress = "real frames",
+		.reader = replay->reader,
+		.frames = &replay->frames,
+		.schedule = &replay->schedule,
+		.engine = replay->engine,
+		.observer = {replay, take_picture, take_frame},
+		.progress = "real frames",
 	};
 	if (replay->truth)
 		player.truth = recorded_truth_source(replay->truth);
@@ -276,7 +279,10 @@ static json_t *all_figures(struct replay *replay)
 	json_object_set_new(json, "recording", json_string(options->path));
 	json_object_set_new(json, "damaged_chunks", json_integer((json_int_t)summary->damaged_chunks));
 	json_object_set_new(json, "truncated", json_boolean(summary->truncated));
-	json_object_set_new(json, "mode", json_string(options->predict ? "predict" : options->every > 1 ? "every" : "play"));
+	json_object_set_new(json, "mode",
+						json_string(options->predict     ? "predict"
+									: options->every > 1 ? "every"
+														 : "play"));
 	json_object_set_new(json, "every", json_integer(options->every ? options->every : 1));
 	json_object_set_new(json, "level", json_integer(options->level));
 	json_object_set_new(json, "method", json_string(options->settings.method));
@@ -310,7 +316,7 @@ static void print_summary(struct replay *replay)
 {
 	const struct engine_info *info = engine_get_info(replay->engine);
 	printf("%s: %s on %s (%s)\n", replay->options->path, replay->options->settings.method, info->renderer,
-	       info->context);
+		   info->context);
 	figures_print(&replay->figures, stdout);
 }
 

@@ -21,7 +21,8 @@ static void print_value(const char *name, const json_t *value)
 	if (json_is_object(object)) {
 		printf("  %-20s", name);
 		const char *separator = " ";
-		json_object_foreach(object, key, inner) {
+		json_object_foreach(object, key, inner)
+		{
 			if (json_is_object(inner) || json_is_array(inner))
 				continue;
 			char *text = json_dumps(inner, JSON_ENCODE_ANY | JSON_REAL_PRECISION(4));
@@ -44,12 +45,12 @@ static void print_list(const char *name, const json_t *list)
 {
 	size_t index;
 	json_t *item, *items = json_incref((json_t *)(uintptr_t)list);
-	json_array_foreach(items, index, item) {
+	json_array_foreach(items, index, item)
+	{
 		const char *key;
 		json_t *value;
 		printf("%s %zu\n", name, index + 1);
-		json_object_foreach(item, key, value)
-			print_value(key, value);
+		json_object_foreach(item, key, value) print_value(key, value);
 	}
 	json_decref(items);
 }
@@ -59,11 +60,13 @@ static void print_status(json_t *status)
 	const char *key;
 	json_t *value;
 	printf("pursuitd\n");
-	json_object_foreach(status, key, value) {
+	json_object_foreach(status, key, value)
+	{
 		if (!json_is_array(value))
 			print_value(key, value);
 	}
-	json_object_foreach(status, key, value) {
+	json_object_foreach(status, key, value)
+	{
 		if (json_is_array(value))
 			print_list(key, value);
 	}
@@ -74,17 +77,17 @@ int verb_status(int argc, char **argv)
 	bool as_json = false;
 	const char *socket = NULL;
 	const struct arg_row rows[] = {
-	    {"json", ARG_FLAG, &as_json, 0, 0, NULL, NULL, "all of it as one JSON object"},
-	    {"socket", ARG_TEXT, &socket, 0, 0, NULL, "PATH", "of the daemon, where it is not the usual one"},
-	    {NULL},
+		{"json", ARG_FLAG, &as_json, 0, 0, NULL, NULL, "all of it as one JSON object"},
+		{"socket", ARG_TEXT, &socket, 0, 0, NULL, "PATH", "of the daemon, where it is not the usual one"},
+		{NULL},
 	};
 	const struct args args = {
-	    .verb = VERB,
-	    .usage = "[--json]",
-	    .summary = "Says what the running daemon does: its streams and outputs with their figures.",
-	    .examples = "  pursuit status\n"
-	                "  pursuit status --json | jq .outputs[0].displayed_hz\n",
-	    .rows = rows,
+		.verb = VERB,
+		.usage = "[--json]",
+		.summary = "Says what the running daemon does: its streams and outputs with their figures.",
+		.examples = "  pursuit status\n"
+					"  pursuit status --json | jq .outputs[0].displayed_hz\n",
+		.rows = rows,
 	};
 	struct control control;
 	struct error error = {{0}};

@@ -23,14 +23,14 @@ static void make_frames(struct fixture *fixture, uint32_t count, uint64_t fps)
 	fixture->recorded.frames = fixture->frames;
 	for (uint32_t i = 0; i < count; i++) {
 		fixture->frames[i] = (struct recorded_frame){
-		    .index = i,
-		    .position = i,
-		    .frame_id = i + 1,
-		    .time_ns = SECOND + i * SECOND / fps,
-		    .interval_ns = SECOND / fps,
-		    .width = 64,
-		    .height = 36,
-		    .motion = true,
+			.index = i,
+			.position = i,
+			.frame_id = i + 1,
+			.time_ns = SECOND + i * SECOND / fps,
+			.interval_ns = SECOND / fps,
+			.width = 64,
+			.height = 36,
+			.motion = true,
 		};
 	}
 }
