@@ -71,6 +71,8 @@ static void build_window(struct mesh *mesh, double z, double low, double high, d
 	          vec3(facade, high, z + half), vec3(0, 0, -1));
 	mesh_quad(mesh, vec3(facade, low, z - half), vec3(deep, low, z - half), vec3(deep, low, z + half),
 	          vec3(facade, low, z + half), vec3(0, 1, 0));
+	mesh_quad(mesh, vec3(facade, high, z - half), vec3(deep, high, z - half), vec3(deep, high, z + half),
+	          vec3(facade, high, z + half), vec3(0, -1, 0));
 	mesh_material(mesh, LAYER_PLASTER, 2.0);
 	mesh_tint(mesh, 0x5a6f86);
 	mesh_quad(mesh, vec3(deep, low, z - half), vec3(deep, low, z + half), vec3(deep, high, z + half),

@@ -155,6 +155,27 @@ static void fill_camera(const struct scene *scene, struct scene_camera *camera)
 	}
 }
 
+/* Plans and poses are cleared before they are filled, so that equal ones are equal bytes. */
+static bool is_drawn(const struct scene *scene)
+{
+	return scene->drawn && memcmp(scene->plan.draws, scene->drawn_plan.draws, sizeof(scene->plan.draws)) == 0 &&
+	       memcmp(&scene->now, &scene->drawn_now, sizeof(scene->now)) == 0 &&
+	       memcmp(&scene->other, &scene->drawn_previous, sizeof(scene->other)) == 0;
+}
+
+/* What does not change need not be drawn again: a still scene costs nothing. */
+static void render_plan(struct scene *scene)
+{
+	if (is_drawn(scene))
+		return;
+	scene->gl.BindFramebuffer(GL_FRAMEBUFFER, scene->frame);
+	stage_draw_plan(scene, 1.0);
+	scene->drawn = true;
+	scene->drawn_plan = scene->plan;
+	scene->drawn_now = scene->now;
+	scene->drawn_previous = scene->other;
+}
+
 static void render_forward(struct scene *scene, double time_next)
 {
 	pose(scene, time_next, &scene->other);
@@ -178,14 +199,14 @@ bool scene_render(struct scene *scene, const struct scene_request *request, stru
 	if (request->forward && !stage_create_forward(scene))
 		return false;
 	double time = usable(request->time);
-	scene->plan = (struct stage_plan){.time = time};
+	memset(&scene->plan, 0, sizeof(scene->plan));
+	scene->plan.time = time;
 	scene->kind->plan(scene, time, &scene->plan);
 	pose(scene, time, &scene->now);
 	pose(scene, usable(request->time_previous), &scene->other);
 	if (camera)
 		fill_camera(scene, camera);
-	scene->gl.BindFramebuffer(GL_FRAMEBUFFER, scene->frame);
-	stage_draw_plan(scene, 1.0);
+	render_plan(scene);
 	scene->has_forward = request->forward;
 	if (request->forward)
 		render_forward(scene, usable(request->time_next));

@@ -114,6 +114,9 @@ struct scene {
 	GLuint depth_buffer;
 	GLuint frame, forward_frame, ui_frame;
 	bool has_forward, ui_drawn;
+	bool drawn; /* the targets hold `drawn_now` against `drawn_previous` */
+	struct stage_plan drawn_plan;
+	struct stage_pose drawn_now, drawn_previous;
 	uint64_t ui_hash;
 };
 

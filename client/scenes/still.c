@@ -90,7 +90,7 @@ static void build_cloth(struct mesh *mesh)
 			double u = (double)i / ACROSS, d = (double)j / DOWN, x = -0.52 + 0.95 * u + 0.08 * d, over = fmax(0.0, d - 0.55) / 0.45;
 			double fold = sin(u * 19.0) * 0.02 * over;
 			struct vec3 p = vec3(x, table + 0.006 - 0.5 * over * over * 0.9 + 0.012 * sin(u * 7.0 + d * 5.0) * (1 - over) + 0.012,
-			                     0.24 + 0.55 * fmin(d / 0.55, 1.0) + 0.03 * over + fold);
+			                     0.24 + 0.59 * fmin(d / 0.55, 1.0) + 0.03 * over + fold);
 			v[j][i] = mesh_add_vertex(mesh, p, vec3(-cos(u * 19.0) * 0.5 * over, 1.0 - over * 0.85, over), u * 2.0, d * 2.0);
 		}
 	}
