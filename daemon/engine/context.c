@@ -14,7 +14,7 @@ static _Thread_local struct context *entered;
 
 static bool is_software(const char *renderer)
 {
-	static const char *const names[] = { "llvmpipe", "softpipe", "swrast", "SWR", "SwiftShader", "Software" };
+	static const char *const names[] = {"llvmpipe", "softpipe", "swrast", "SWR", "SwiftShader", "Software"};
 	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
 		if (strstr(renderer, names[i]))
 			return true;
@@ -45,9 +45,9 @@ static struct context *create_auto(const struct engine_params *params, struct er
 		context = context_osmesa_create(&osmesa);
 	if (!context)
 		error_set(error, -ENODEV,
-		          "no OpenGL context (GPU: %.120s; surfaceless: %.120s; OSMesa: %.120s); "
-		          "on Debian install libegl1 and libgl1-mesa-dri",
-		          gpu.text, surfaceless.text, osmesa.text);
+				  "no OpenGL context (GPU: %.120s; surfaceless: %.120s; OSMesa: %.120s); "
+				  "on Debian install libegl1 and libgl1-mesa-dri",
+				  gpu.text, surfaceless.text, osmesa.text);
 	return context;
 }
 

@@ -27,7 +27,7 @@ static bool egl_enter(struct context *context)
 	if (eglGetCurrentContext() == egl->context)
 		return true;
 	return eglBindAPI(context->gl.gles ? EGL_OPENGL_ES_API : EGL_OPENGL_API) &&
-	       eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
+		   eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context);
 }
 
 static void egl_release(struct context *context)
@@ -44,8 +44,8 @@ static void egl_destroy(struct context *context)
 	free(egl);
 }
 
-static const struct context_ops surfaceless_ops = { "egl-surfaceless", egl_enter, egl_release, egl_destroy };
-static const struct context_ops device_ops = { "egl-device", egl_enter, egl_release, egl_destroy };
+static const struct context_ops surfaceless_ops = {"egl-surfaceless", egl_enter, egl_release, egl_destroy};
+static const struct context_ops device_ops = {"egl-device", egl_enter, egl_release, egl_destroy};
 
 /* Whole words only: one name may be the beginning of another. */
 static bool listed(const char *extensions, const char *name)
@@ -61,8 +61,8 @@ static EGLConfig choose_config(EGLDisplay display, bool gles)
 {
 	if (listed(eglQueryString(display, EGL_EXTENSIONS), "EGL_KHR_no_config_context"))
 		return EGL_NO_CONFIG_KHR;
-	const EGLint wanted[] = { EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, gles ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT,
-		                      EGL_NONE };
+	const EGLint wanted[] = {EGL_SURFACE_TYPE, 0, EGL_RENDERABLE_TYPE, gles ? EGL_OPENGL_ES3_BIT : EGL_OPENGL_BIT,
+							 EGL_NONE};
 	EGLConfig config = EGL_NO_CONFIG_KHR;
 	EGLint count = 0;
 	eglChooseConfig(display, wanted, &config, 1, &count);
@@ -71,15 +71,15 @@ static EGLConfig choose_config(EGLDisplay display, bool gles)
 
 static EGLContext create_context(EGLDisplay display, EGLConfig config, bool gles, bool robust)
 {
-	EGLint attributes[16] = { EGL_CONTEXT_MAJOR_VERSION, gles ? 3 : 4, EGL_CONTEXT_MINOR_VERSION, gles ? 1 : 3 };
+	EGLint attributes[16] = {EGL_CONTEXT_MAJOR_VERSION, gles ? 3 : 4, EGL_CONTEXT_MINOR_VERSION, gles ? 1 : 3};
 	int used = 4;
 	if (!gles) {
 		attributes[used++] = EGL_CONTEXT_OPENGL_PROFILE_MASK;
 		attributes[used++] = EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT;
 	}
 	if (robust) {
-		attributes[used++] = gles ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT :
-		                            EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
+		attributes[used++] =
+			gles ? EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_EXT : EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY;
 		attributes[used++] = EGL_LOSE_CONTEXT_ON_RESET;
 	}
 	attributes[used] = EGL_NONE;
@@ -108,8 +108,8 @@ static bool start(struct context_egl *egl, bool gles, struct error *error)
 	if (egl->context == EGL_NO_CONTEXT)
 		egl->context = create_context(egl->display, config, gles, false);
 	if (egl->context == EGL_NO_CONTEXT) {
-		error_set(error, -ENOTSUP, "EGL gives no %s context (error 0x%x)",
-		          gles ? "OpenGL ES 3.1" : "OpenGL 4.3 core", (unsigned)eglGetError());
+		error_set(error, -ENOTSUP, "EGL gives no %s context (error 0x%x)", gles ? "OpenGL ES 3.1" : "OpenGL 4.3 core",
+				  (unsigned)eglGetError());
 		return false;
 	}
 	if (!eglMakeCurrent(egl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, egl->context)) {
@@ -120,10 +120,10 @@ static bool start(struct context_egl *egl, bool gles, struct error *error)
 }
 
 static struct context *create(EGLenum platform, void *native, const struct context_ops *ops, bool gles,
-                              struct error *error)
+							  struct error *error)
 {
 	PFNEGLGETPLATFORMDISPLAYEXTPROC get_display =
-	    (PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
+		(PFNEGLGETPLATFORMDISPLAYEXTPROC)eglGetProcAddress("eglGetPlatformDisplayEXT");
 	EGLDisplay display = get_display ? get_display(platform, native, NULL) : EGL_NO_DISPLAY;
 	if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL)) {
 		error_set(error, -ENODEV, "EGL cannot be initialised (error 0x%x)", (unsigned)eglGetError());
@@ -185,8 +185,7 @@ struct context *context_egl_device_create(uint32_t index, bool gles, struct erro
 
 struct context *context_egl_gpu_create(bool gles, struct error *error)
 {
-	PFNEGLQUERYDEVICESTRINGEXTPROC query =
-	    (PFNEGLQUERYDEVICESTRINGEXTPROC)eglGetProcAddress("eglQueryDeviceStringEXT");
+	PFNEGLQUERYDEVICESTRINGEXTPROC query = (PFNEGLQUERYDEVICESTRINGEXTPROC)eglGetProcAddress("eglQueryDeviceStringEXT");
 	EGLDeviceEXT devices[MAX_DEVICES];
 	int count = list_devices(devices, error);
 	if (count < 0)

@@ -60,12 +60,12 @@ static void osmesa_destroy(struct context *context)
 	free(osmesa);
 }
 
-static const struct context_ops osmesa_ops = { "osmesa", osmesa_enter, osmesa_release, osmesa_destroy };
+static const struct context_ops osmesa_ops = {"osmesa", osmesa_enter, osmesa_release, osmesa_destroy};
 
 /* It stays in memory when closed: Mesa leaves thread-local destructors behind. */
 static void *open_library(void)
 {
-	static const char *const names[] = { "libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so" };
+	static const char *const names[] = {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
 	void *library = NULL;
 	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]) && !library; i++)
 		library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
@@ -84,12 +84,18 @@ static bool find_functions(struct context_osmesa *osmesa)
 
 static OSMesaContext create_newest(const struct context_osmesa *osmesa)
 {
-	static const int versions[] = { 43, 41, 33 };
+	static const int versions[] = {43, 41, 33};
 	OSMesaContext context = NULL;
 	for (size_t i = 0; i < sizeof(versions) / sizeof(versions[0]) && !context; i++) {
-		const int attributes[] = { OSMESA_FORMAT, OSMESA_BGRA, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-			                       OSMESA_CONTEXT_MAJOR_VERSION, versions[i] / 10,
-			                       OSMESA_CONTEXT_MINOR_VERSION, versions[i] % 10, 0 };
+		const int attributes[] = {OSMESA_FORMAT,
+								  OSMESA_BGRA,
+								  OSMESA_PROFILE,
+								  OSMESA_CORE_PROFILE,
+								  OSMESA_CONTEXT_MAJOR_VERSION,
+								  versions[i] / 10,
+								  OSMESA_CONTEXT_MINOR_VERSION,
+								  versions[i] % 10,
+								  0};
 		context = osmesa->create(attributes, NULL);
 	}
 	return context;

@@ -88,7 +88,7 @@ static bool is_identity(const struct pursuit_transfer *transfer, enum engine_cur
 		return false;
 	if (curve == ENGINE_CURVE_GAMMA)
 		return (transfer->curve == PURSUIT_CURVE_GAMMA && transfer->gamma == gamma) ||
-		       (transfer->curve == PURSUIT_CURVE_LINEAR && gamma == 1.0f);
+			   (transfer->curve == PURSUIT_CURVE_LINEAR && gamma == 1.0f);
 	return transfer->curve == PURSUIT_CURVE_SRGB;
 }
 
@@ -98,13 +98,13 @@ static uint32_t component_values(uint32_t format)
 }
 
 void convert_prepare(struct convert *convert, uint32_t format, const struct pursuit_transfer *transfer,
-                     enum engine_curve curve, float gamma)
+					 enum engine_curve curve, float gamma)
 {
-	struct pursuit_transfer wanted = { 0 };
+	struct pursuit_transfer wanted = {0};
 	if (transfer)
 		wanted = *transfer;
 	bool same = convert->made && convert->format == format && convert->curve == curve && convert->gamma == gamma &&
-	            memcmp(&convert->transfer, &wanted, sizeof(wanted)) == 0;
+				memcmp(&convert->transfer, &wanted, sizeof(wanted)) == 0;
 	if (same)
 		return;
 	convert->format = format;

@@ -27,7 +27,7 @@ struct convert {
 
 /* Makes ready for planes of that format and transfer; NULL transfer: code values as they are. */
 void convert_prepare(struct convert *convert, uint32_t format, const struct pursuit_transfer *transfer,
-                     enum engine_curve curve, float gamma);
+					 enum engine_curve curve, float gamma);
 
 /* One row of pixels to BGRA bytes; `opaque` sets alpha to 255, else it is the source's. */
 void convert_row(const struct convert *convert, uint8_t *to, const uint8_t *from, uint32_t width, bool opaque);

@@ -73,8 +73,8 @@ fail:
 static void delete_objects(struct engine *engine)
 {
 	const struct gl *gl = engine_gl(engine);
-	struct target *const targets[] = { &engine->color, &engine->real, &engine->between,
-		                                 &engine->low,   &engine->shown, &engine->ui };
+	struct target *const targets[] = {&engine->color, &engine->real,  &engine->between,
+									  &engine->low,   &engine->shown, &engine->ui};
 	for (size_t i = 0; i < sizeof(targets) / sizeof(targets[0]); i++)
 		target_finish(targets[i], gl);
 	for (int i = 0; i < MAX_LEVELS; i++)
@@ -124,7 +124,7 @@ static int check_size(const struct engine *engine, const struct frame *frame, st
 		if (plane->width && plane->height && plane->width <= most && plane->height <= most)
 			return 0;
 		return error_set(error, -EINVAL, "planes[%u] is %u x %u, this renderer takes 1 x 1 to %u x %u", i, plane->width,
-		                 plane->height, most, most);
+						 plane->height, most, most);
 	}
 	return error_set(error, -EINVAL, "frame %llu has no colour plane", (unsigned long long)frame->header.frame_id);
 }
@@ -133,7 +133,7 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 {
 	timer_drop(&engine->timer);
 	report_begin(&engine->report, frame->header.frame_id, timer_source(&engine->timer));
-	engine->job = (struct job){ .frame = frame };
+	engine->job = (struct job){.frame = frame};
 	engine->begun = engine->moves = engine->compensated = false;
 	engine->levels_made = LEVELS_NONE;
 	engine->n = params->n < 1 ? 1 : params->n > 8 ? 8 : params->n;
@@ -142,7 +142,7 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 }
 
 int engine_begin(struct engine *engine, const struct frame *frame, const struct engine_begin_params *params,
-                 struct error *error)
+				 struct error *error)
 {
 	uint64_t began = timer_now_ns();
 	int result = context_enter(engine->context, error);
@@ -172,12 +172,12 @@ static int check_request(const struct engine *engine, const struct engine_image 
 		return error_set(error, -EINVAL, "there is no frame to show yet");
 	if (image->data && (image->stride % 4 || image->stride < 4 * (size_t)engine->color.width))
 		return error_set(error, -EINVAL, "the image's stride is %zu, must be a multiple of 4 and at least %zu",
-		                 image->stride, 4 * (size_t)engine->color.width);
+						 image->stride, 4 * (size_t)engine->color.width);
 	return 0;
 }
 
 static int show(struct engine *engine, const struct engine_request *request, struct engine_image *image,
-                struct error *error)
+				struct error *error)
 {
 	double phase = isnan(request->phase) ? 0.0 : fmin(fmax(request->phase, -1.0), 8.0);
 	const struct target *picture = NULL;
@@ -195,7 +195,7 @@ static int show(struct engine *engine, const struct engine_request *request, str
 }
 
 int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
-                  struct error *error)
+				  struct error *error)
 {
 	uint64_t began = timer_now_ns();
 	int result = check_request(engine, image, error);

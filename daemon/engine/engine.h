@@ -6,7 +6,8 @@
  * The only header of engine/ that the rest of the daemon includes.
  *
  * One engine lives on one thread at a time, which must be the one that made it
- * (it owns a GL context). Nothing in it is irreplaceable: it can be destroyed
+ * (it owns a GL context, which is current on the thread after each call: who
+ * draws there with another context makes that one current again). Nothing in it is irreplaceable: it can be destroyed
  * and made anew at any moment.
  *
  *   engine_begin(engine, frame, ...)       once per real frame
@@ -25,7 +26,7 @@
 #include "daemon/frame.h"
 
 enum engine_context_kind {
-	ENGINE_CONTEXT_AUTO = 0,       /* EGL device with a GPU, EGL surfaceless, OSMesa: the first that works */
+	ENGINE_CONTEXT_AUTO = 0, /* EGL device with a GPU, EGL surfaceless, OSMesa: the first that works */
 	ENGINE_CONTEXT_EGL_SURFACELESS,
 	ENGINE_CONTEXT_EGL_DEVICE,
 	ENGINE_CONTEXT_OSMESA,
@@ -45,19 +46,19 @@ enum engine_curve {
 /* A zeroed struct means the defaults. */
 struct engine_params {
 	enum engine_context_kind context;
-	uint32_t device;          /* index, for ENGINE_CONTEXT_EGL_DEVICE */
-	bool gles;                /* a GLES 3.1 context instead of GL 4.3 core */
-	const char *method;       /* name; NULL: "pursuit" */
+	uint32_t device;    /* index, for ENGINE_CONTEXT_EGL_DEVICE */
+	bool gles;          /* a GLES 3.1 context instead of GL 4.3 core */
+	const char *method; /* name; NULL: "pursuit" */
 	enum engine_blur blur;
-	bool no_compensation;     /* E = c, B = mix */
-	uint32_t cell;            /* 4 to 64; 0: 8 */
-	uint32_t blur_level;      /* pyramid level of L, 1 to 6; 0: 2 */
+	bool no_compensation;       /* E = c, B = mix */
+	uint32_t cell;              /* 4 to 64; 0: 8 */
+	uint32_t blur_level;        /* pyramid level of L, 1 to 6; 0: 2 */
 	uint32_t threshold_quarter; /* snapping threshold, quarter pixels; 0: 2 */
-	float display_width_mm;   /* 0: 531 */
-	float viewing_distance_mm; /* 0: 600 */
-	enum engine_curve curve;  /* transfer of the display */
-	float gamma;              /* 1 to 5, with ENGINE_CURVE_GAMMA */
-	bool finish_each_pass;    /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
+	float display_width_mm;     /* 0: 531 */
+	float viewing_distance_mm;  /* 0: 600 */
+	enum engine_curve curve;    /* transfer of the display */
+	float gamma;                /* 1 to 5, with ENGINE_CURVE_GAMMA */
+	bool finish_each_pass;      /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
 };
 
 enum engine_show {
@@ -78,8 +79,8 @@ struct engine_image {
 };
 
 struct engine_begin_params {
-	uint32_t n;               /* N, 1 to 8, clamped */
-	double last_phase;        /* of the last in-between expected; < 0: (N - 1) / N */
+	uint32_t n;                /* N, 1 to 8, clamped */
+	double last_phase;         /* of the last in-between expected; < 0: (N - 1) / N */
 	uint64_t real_interval_ns; /* T; 0: as the frame says */
 };
 
@@ -93,11 +94,11 @@ struct engine_report {
 	struct engine_pass_report {
 		const char *name; /* "analyse", "upload", "pyramid", "compensate", "warp", "ui", "read"; static */
 		uint32_t runs;
-		double ms;        /* GPU time (timer queries), else CPU time with finish_each_pass, else CPU time of the call */
+		double ms; /* GPU time (timer queries), else CPU time with finish_each_pass, else CPU time of the call */
 	} passes[ENGINE_MAX_PASSES];
 	uint32_t left_out_count;
 	struct engine_left_out {
-		const char *name;   /* docs/method.md, 8 */
+		const char *name; /* docs/method.md, 8 */
 		const char *reason;
 	} left_out[ENGINE_MAX_LEFT_OUT];
 	const char *time_source; /* "timer-query", "finish", "cpu" */
@@ -135,14 +136,14 @@ const struct engine_info *engine_get_info(const struct engine *engine);
  * 0, or a negative errno with a sentence (-ENOMEM, -EIO: the context is lost; -EINVAL: size beyond the renderer's).
  */
 int engine_begin(struct engine *engine, const struct frame *frame, const struct engine_begin_params *params,
-                 struct error *error);
+				 struct error *error);
 
 /* Size of displayed frames: that of the colour plane of the frame begun; 0 x 0 before the first. */
 void engine_get_size(const struct engine *engine, uint32_t *width, uint32_t *height);
 
 /* Makes one displayed frame of the real frame begun last. With image->data it returns when the pixels are there. */
 int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
-                  struct error *error);
+				  struct error *error);
 
 /* What ran since engine_begin(). Owned by the engine, valid until the next call. Waits for timer queries. */
 const struct engine_report *engine_get_report(struct engine *engine);

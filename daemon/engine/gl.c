@@ -9,7 +9,7 @@
 
 static gl_function find(gl_lookup lookup, const char *name)
 {
-	static const char *const suffixes[] = { "", "EXT", "KHR", "ARB" };
+	static const char *const suffixes[] = {"", "EXT", "KHR", "ARB"};
 	for (size_t i = 0; i < sizeof(suffixes) / sizeof(suffixes[0]); i++) {
 		char full[96];
 		snprintf(full, sizeof(full), "gl%s%s", name, suffixes[i]);
@@ -36,7 +36,7 @@ static void learn_limits(struct gl *gl)
 {
 	const char *version = (const char *)gl->GetString(GL_VERSION);
 	gl->gles = version && strncmp(version, "OpenGL ES", 9) == 0;
-	GLint major = 0, minor = 0, texture = 0, viewport[2] = { 0, 0 };
+	GLint major = 0, minor = 0, texture = 0, viewport[2] = {0, 0};
 	gl->GetIntegerv(GL_MAJOR_VERSION, &major);
 	gl->GetIntegerv(GL_MINOR_VERSION, &minor);
 	gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
@@ -53,9 +53,9 @@ static void learn_limits(struct gl *gl)
 
 int gl_load(struct gl *gl, gl_lookup lookup, struct error *error)
 {
-#define X(name, type)                                                                              \
-	gl->name = (PFNGL##type##PROC)find(lookup, #name);                                             \
-	if (!gl->name)                                                                                 \
+#define X(name, type)                                  \
+	gl->name = (PFNGL##type##PROC)find(lookup, #name); \
+	if (!gl->name)                                     \
 		return error_set(error, -ENOTSUP, "the renderer has no gl%s", #name);
 	GL_FUNCTIONS(X)
 #undef X

@@ -15,83 +15,83 @@
 #include "daemon/error.h"
 
 /* Every one of these must exist. */
-#define GL_FUNCTIONS(X)                                                                            \
-	X(ActiveTexture, ACTIVETEXTURE)                                                                \
-	X(AttachShader, ATTACHSHADER)                                                                  \
-	X(BindAttribLocation, BINDATTRIBLOCATION)                                                      \
-	X(BindBuffer, BINDBUFFER)                                                                      \
-	X(BindFramebuffer, BINDFRAMEBUFFER)                                                            \
-	X(BindRenderbuffer, BINDRENDERBUFFER)                                                          \
-	X(BindTexture, BINDTEXTURE)                                                                    \
-	X(BindVertexArray, BINDVERTEXARRAY)                                                            \
-	X(BlendFunc, BLENDFUNC)                                                                        \
-	X(BlitFramebuffer, BLITFRAMEBUFFER)                                                            \
-	X(BufferData, BUFFERDATA)                                                                      \
-	X(BufferSubData, BUFFERSUBDATA)                                                                \
-	X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)                                              \
-	X(ClearBufferfv, CLEARBUFFERFV)                                                                \
-	X(CompileShader, COMPILESHADER)                                                                \
-	X(CreateProgram, CREATEPROGRAM)                                                                \
-	X(CreateShader, CREATESHADER)                                                                  \
-	X(CullFace, CULLFACE)                                                                          \
-	X(DeleteBuffers, DELETEBUFFERS)                                                                \
-	X(DeleteFramebuffers, DELETEFRAMEBUFFERS)                                                      \
-	X(DeleteProgram, DELETEPROGRAM)                                                                \
-	X(DeleteRenderbuffers, DELETERENDERBUFFERS)                                                    \
-	X(DeleteShader, DELETESHADER)                                                                  \
-	X(DeleteTextures, DELETETEXTURES)                                                              \
-	X(DeleteVertexArrays, DELETEVERTEXARRAYS)                                                      \
-	X(DepthFunc, DEPTHFUNC)                                                                        \
-	X(DepthMask, DEPTHMASK)                                                                        \
-	X(Disable, DISABLE)                                                                            \
-	X(DrawArrays, DRAWARRAYS)                                                                      \
-	X(DrawBuffers, DRAWBUFFERS)                                                                    \
-	X(DrawElements, DRAWELEMENTS)                                                                  \
-	X(Enable, ENABLE)                                                                              \
-	X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY)                                            \
-	X(Finish, FINISH)                                                                              \
-	X(Flush, FLUSH)                                                                                \
-	X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER)                                            \
-	X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)                                                  \
-	X(FrontFace, FRONTFACE)                                                                        \
-	X(GenBuffers, GENBUFFERS)                                                                      \
-	X(GenFramebuffers, GENFRAMEBUFFERS)                                                            \
-	X(GenRenderbuffers, GENRENDERBUFFERS)                                                          \
-	X(GenTextures, GENTEXTURES)                                                                    \
-	X(GenVertexArrays, GENVERTEXARRAYS)                                                            \
-	X(GetError, GETERROR)                                                                          \
-	X(GetIntegerv, GETINTEGERV)                                                                    \
-	X(GetProgramInfoLog, GETPROGRAMINFOLOG)                                                        \
-	X(GetProgramiv, GETPROGRAMIV)                                                                  \
-	X(GetShaderInfoLog, GETSHADERINFOLOG)                                                          \
-	X(GetShaderiv, GETSHADERIV)                                                                    \
-	X(GetString, GETSTRING)                                                                        \
-	X(GetStringi, GETSTRINGI)                                                                      \
-	X(GetUniformLocation, GETUNIFORMLOCATION)                                                      \
-	X(LinkProgram, LINKPROGRAM)                                                                    \
-	X(PixelStorei, PIXELSTOREI)                                                                    \
-	X(ReadBuffer, READBUFFER)                                                                      \
-	X(ReadPixels, READPIXELS)                                                                      \
-	X(RenderbufferStorage, RENDERBUFFERSTORAGE)                                                    \
-	X(Scissor, SCISSOR)                                                                            \
-	X(ShaderSource, SHADERSOURCE)                                                                  \
-	X(TexImage2D, TEXIMAGE2D)                                                                      \
-	X(TexParameteri, TEXPARAMETERI)                                                                \
-	X(TexSubImage2D, TEXSUBIMAGE2D)                                                                \
-	X(Uniform1f, UNIFORM1F)                                                                        \
-	X(Uniform1i, UNIFORM1I)                                                                        \
-	X(Uniform2f, UNIFORM2F)                                                                        \
-	X(UseProgram, USEPROGRAM)                                                                      \
-	X(VertexAttribPointer, VERTEXATTRIBPOINTER)                                                    \
+#define GL_FUNCTIONS(X)                                 \
+	X(ActiveTexture, ACTIVETEXTURE)                     \
+	X(AttachShader, ATTACHSHADER)                       \
+	X(BindAttribLocation, BINDATTRIBLOCATION)           \
+	X(BindBuffer, BINDBUFFER)                           \
+	X(BindFramebuffer, BINDFRAMEBUFFER)                 \
+	X(BindRenderbuffer, BINDRENDERBUFFER)               \
+	X(BindTexture, BINDTEXTURE)                         \
+	X(BindVertexArray, BINDVERTEXARRAY)                 \
+	X(BlendFunc, BLENDFUNC)                             \
+	X(BlitFramebuffer, BLITFRAMEBUFFER)                 \
+	X(BufferData, BUFFERDATA)                           \
+	X(BufferSubData, BUFFERSUBDATA)                     \
+	X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)   \
+	X(ClearBufferfv, CLEARBUFFERFV)                     \
+	X(CompileShader, COMPILESHADER)                     \
+	X(CreateProgram, CREATEPROGRAM)                     \
+	X(CreateShader, CREATESHADER)                       \
+	X(CullFace, CULLFACE)                               \
+	X(DeleteBuffers, DELETEBUFFERS)                     \
+	X(DeleteFramebuffers, DELETEFRAMEBUFFERS)           \
+	X(DeleteProgram, DELETEPROGRAM)                     \
+	X(DeleteRenderbuffers, DELETERENDERBUFFERS)         \
+	X(DeleteShader, DELETESHADER)                       \
+	X(DeleteTextures, DELETETEXTURES)                   \
+	X(DeleteVertexArrays, DELETEVERTEXARRAYS)           \
+	X(DepthFunc, DEPTHFUNC)                             \
+	X(DepthMask, DEPTHMASK)                             \
+	X(Disable, DISABLE)                                 \
+	X(DrawArrays, DRAWARRAYS)                           \
+	X(DrawBuffers, DRAWBUFFERS)                         \
+	X(DrawElements, DRAWELEMENTS)                       \
+	X(Enable, ENABLE)                                   \
+	X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) \
+	X(Finish, FINISH)                                   \
+	X(Flush, FLUSH)                                     \
+	X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER) \
+	X(FramebufferTexture2D, FRAMEBUFFERTEXTURE2D)       \
+	X(FrontFace, FRONTFACE)                             \
+	X(GenBuffers, GENBUFFERS)                           \
+	X(GenFramebuffers, GENFRAMEBUFFERS)                 \
+	X(GenRenderbuffers, GENRENDERBUFFERS)               \
+	X(GenTextures, GENTEXTURES)                         \
+	X(GenVertexArrays, GENVERTEXARRAYS)                 \
+	X(GetError, GETERROR)                               \
+	X(GetIntegerv, GETINTEGERV)                         \
+	X(GetProgramInfoLog, GETPROGRAMINFOLOG)             \
+	X(GetProgramiv, GETPROGRAMIV)                       \
+	X(GetShaderInfoLog, GETSHADERINFOLOG)               \
+	X(GetShaderiv, GETSHADERIV)                         \
+	X(GetString, GETSTRING)                             \
+	X(GetStringi, GETSTRINGI)                           \
+	X(GetUniformLocation, GETUNIFORMLOCATION)           \
+	X(LinkProgram, LINKPROGRAM)                         \
+	X(PixelStorei, PIXELSTOREI)                         \
+	X(ReadBuffer, READBUFFER)                           \
+	X(ReadPixels, READPIXELS)                           \
+	X(RenderbufferStorage, RENDERBUFFERSTORAGE)         \
+	X(Scissor, SCISSOR)                                 \
+	X(ShaderSource, SHADERSOURCE)                       \
+	X(TexImage2D, TEXIMAGE2D)                           \
+	X(TexParameteri, TEXPARAMETERI)                     \
+	X(TexSubImage2D, TEXSUBIMAGE2D)                     \
+	X(Uniform1f, UNIFORM1F)                             \
+	X(Uniform1i, UNIFORM1I)                             \
+	X(Uniform2f, UNIFORM2F)                             \
+	X(UseProgram, USEPROGRAM)                           \
+	X(VertexAttribPointer, VERTEXATTRIBPOINTER)         \
 	X(Viewport, VIEWPORT)
 
 /* These may be missing (NULL). GLES has them under the names of its extensions. */
-#define GL_OPTIONAL_FUNCTIONS(X)                                                                   \
-	X(GetGraphicsResetStatus, GETGRAPHICSRESETSTATUS)                                              \
-	X(GenQueries, GENQUERIES)                                                                      \
-	X(DeleteQueries, DELETEQUERIES)                                                                \
-	X(BeginQuery, BEGINQUERY)                                                                      \
-	X(EndQuery, ENDQUERY)                                                                          \
+#define GL_OPTIONAL_FUNCTIONS(X)                      \
+	X(GetGraphicsResetStatus, GETGRAPHICSRESETSTATUS) \
+	X(GenQueries, GENQUERIES)                         \
+	X(DeleteQueries, DELETEQUERIES)                   \
+	X(BeginQuery, BEGINQUERY)                         \
+	X(EndQuery, ENDQUERY)                             \
 	X(GetQueryObjectui64v, GETQUERYOBJECTUI64V)
 
 struct gl {
@@ -100,7 +100,7 @@ struct gl {
 	GL_OPTIONAL_FUNCTIONS(X)
 #undef X
 	bool gles;
-	int version; /* 10 x major + minor */
+	int version;  /* 10 x major + minor */
 	int max_size; /* of textures and viewports, pixels */
 	bool timer_queries;
 	/* How 4 bytes a pixel go in and out: BGRA, or on GLES the same bytes taken for RGBA. */

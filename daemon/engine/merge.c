@@ -27,7 +27,7 @@ static struct block block_at(const struct plan *plan, const struct merge_leaf *l
 {
 	const struct plan_vertex *top = plan->vertices + (size_t)leaf->row * plan->columns + leaf->column;
 	const struct plan_vertex *bottom = top + (size_t)leaf->size * plan->columns;
-	struct block block = { top, top + leaf->size, bottom, bottom + leaf->size, false };
+	struct block block = {top, top + leaf->size, bottom, bottom + leaf->size, false};
 	float fx = block.v00->ux - block.v11->ux, fy = block.v00->uy - block.v11->uy;
 	float rx = block.v10->ux - block.v01->ux, ry = block.v10->uy - block.v01->uy;
 	/* The rule of the plan: the diagonal whose ends move more alike. */
@@ -37,7 +37,7 @@ static struct block block_at(const struct plan *plan, const struct merge_leaf *l
 
 /* Whether the two triangles pass by a vertex at (s, t) within the block, each 0 to 1. */
 static bool passes_by(const struct block *block, const struct plan_vertex *vertex, float s, float t,
-                      const struct tolerance *tolerance)
+					  const struct tolerance *tolerance)
 {
 	float w00, w10, w01, w11;
 	if (block->falling) {
@@ -58,7 +58,7 @@ static bool passes_by(const struct block *block, const struct plan_vertex *verte
 	float uy = w00 * a->uy + w10 * b->uy + w01 * c->uy + w11 * d->uy - vertex->uy;
 	float z = w00 * a->z + w10 * b->z + w01 * c->z + w11 * d->z - vertex->z;
 	return fmaxf(fabsf(x), fabsf(y)) <= POSITION_TOLERANCE && fmaxf(fabsf(ux), fabsf(uy)) <= tolerance->displacement &&
-	       fabsf(z) <= tolerance->depth;
+		   fabsf(z) <= tolerance->depth;
 }
 
 static bool is_flat(const struct plan *plan, const struct merge_leaf *leaf, const struct tolerance *tolerance)
@@ -83,7 +83,7 @@ static void add_leaf(struct merge *merge, const struct plan *plan, const struct 
 }
 
 static void divide(struct merge *merge, const struct plan *plan, struct merge_leaf leaf,
-                   const struct tolerance *tolerance)
+				   const struct tolerance *tolerance)
 {
 	uint32_t columns = plan->columns - 1, rows = plan->rows - 1;
 	if (leaf.column >= columns || leaf.row >= rows)
@@ -95,8 +95,8 @@ static void divide(struct merge *merge, const struct plan *plan, struct merge_le
 	}
 	uint32_t half = leaf.size / 2;
 	for (uint32_t i = 0; i < 4; i++)
-		divide(merge, plan, (struct merge_leaf){ leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half },
-		       tolerance);
+		divide(merge, plan, (struct merge_leaf){leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half},
+			   tolerance);
 }
 
 static bool reserve(struct merge *merge, const struct plan *plan)
@@ -117,10 +117,10 @@ static bool reserve(struct merge *merge, const struct plan *plan)
 
 /* The used vertices around a leaf, from its first corner on, turning the positive way. */
 static uint32_t walk_around(const struct merge *merge, const struct plan *plan, const struct merge_leaf *leaf,
-                            uint32_t around[4 * LARGEST])
+							uint32_t around[4 * LARGEST])
 {
 	uint32_t at = leaf->row * plan->columns + leaf->column, count = 0;
-	const uint32_t steps[4] = { 1, plan->columns, UINT32_MAX, 0u - plan->columns };
+	const uint32_t steps[4] = {1, plan->columns, UINT32_MAX, 0u - plan->columns};
 	for (int side = 0; side < 4; side++)
 		for (uint32_t i = 0; i < leaf->size; i++, at += steps[side])
 			if (merge->used[at])
@@ -137,11 +137,11 @@ static uint32_t put(uint32_t *indices, uint32_t a, uint32_t b, uint32_t c)
 }
 
 static uint32_t emit(const struct merge *merge, const struct plan *plan, const struct merge_leaf *leaf,
-                     uint32_t *indices)
+					 uint32_t *indices)
 {
 	if (leaf->size == 1) {
 		memcpy(indices, plan->indices + 6 * ((size_t)leaf->row * (plan->columns - 1) + leaf->column),
-		       6 * sizeof(*indices));
+			   6 * sizeof(*indices));
 		return 6;
 	}
 	uint32_t around[4 * LARGEST], used = 0, count = walk_around(merge, plan, leaf, around);
@@ -160,17 +160,17 @@ static uint32_t emit(const struct merge *merge, const struct plan *plan, const s
 uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float displacement_tolerance, uint32_t *indices)
 {
 	/* Depth matters only where triangles lie over each other. */
-	const struct tolerance tolerance = { displacement_tolerance, plan->folded ? DEPTH_TOLERANCE : INFINITY };
+	const struct tolerance tolerance = {displacement_tolerance, plan->folded ? DEPTH_TOLERANCE : INFINITY};
 	if (!reserve(merge, plan))
 		return 0;
 	/* The outermost row and column of cells are halves; blocks begin at the first whole cell. */
 	for (uint32_t i = 0; i + 1 < plan->columns; i++)
-		add_leaf(merge, plan, &(struct merge_leaf){ i, 0, 1 });
+		add_leaf(merge, plan, &(struct merge_leaf){i, 0, 1});
 	for (uint32_t row = 1; row + 1 < plan->rows; row += LARGEST) {
 		for (uint32_t i = row; i < row + LARGEST && i + 1 < plan->rows; i++)
-			add_leaf(merge, plan, &(struct merge_leaf){ 0, i, 1 });
+			add_leaf(merge, plan, &(struct merge_leaf){0, i, 1});
 		for (uint32_t column = 1; column + 1 < plan->columns; column += LARGEST)
-			divide(merge, plan, (struct merge_leaf){ column, row, LARGEST }, &tolerance);
+			divide(merge, plan, (struct merge_leaf){column, row, LARGEST}, &tolerance);
 	}
 	uint32_t count = 0;
 	for (uint32_t i = 0; i < merge->leaf_count; i++)
@@ -182,5 +182,5 @@ void merge_finish(struct merge *merge)
 {
 	free(merge->used);
 	free(merge->leaves);
-	*merge = (struct merge){ 0 };
+	*merge = (struct merge){0};
 }

@@ -11,12 +11,12 @@
 struct method {
 	const char *name;
 	const char *description; /* one line */
-	float tolerance; /* of merged cells (merge.h), pixels */
+	float tolerance;         /* of merged cells (merge.h), pixels */
 	/* Colour and UI are uploaded; the frame's planes are still there. 0 or a negative errno with a sentence. */
 	int (*begin)(struct engine *engine, struct error *error);
 	/* Makes the picture, without UI, and says where it is. */
 	int (*show)(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
-	            struct error *error);
+				struct error *error);
 };
 
 extern const struct method method_hold, method_grid, method_pursuit;
@@ -27,6 +27,6 @@ const struct method *method_find(const char *name, struct error *error);
 /* For methods that build upon `grid`. */
 int grid_begin(struct engine *engine, struct error *error);
 int grid_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
-              struct error *error);
+			  struct error *error);
 
 #endif

@@ -128,7 +128,7 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 }
 
 int grid_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
-              struct error *error)
+			  struct error *error)
 {
 	bool real = show == ENGINE_SHOW_REAL;
 	*picture = &engine->color;

@@ -11,7 +11,7 @@ static int hold_begin(struct engine *engine, struct error *error)
 }
 
 static int hold_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
-                     struct error *error)
+					 struct error *error)
 {
 	*picture = &engine->color;
 	return 0;

@@ -6,7 +6,7 @@
 #include <errno.h>
 
 static int check_count(const char *name, uint32_t *value, uint32_t fallback, uint32_t low, uint32_t high,
-                       struct error *error)
+					   struct error *error)
 {
 	if (!*value)
 		*value = fallback;

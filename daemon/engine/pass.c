@@ -6,8 +6,10 @@
 #include <string.h>
 
 static const struct pass *const passes[PASS_COUNT] = {
-	[PASS_ANALYSE] = &pass_analyse, [PASS_UPLOAD] = &pass_upload, [PASS_PYRAMID] = &pass_pyramid,
-	[PASS_COMPENSATE] = &pass_compensate, [PASS_WARP] = &pass_warp, [PASS_UI] = &pass_ui, [PASS_READ] = &pass_read,
+	[PASS_ANALYSE] = &pass_analyse, [PASS_UPLOAD] = &pass_upload,
+	[PASS_PYRAMID] = &pass_pyramid, [PASS_COMPENSATE] = &pass_compensate,
+	[PASS_WARP] = &pass_warp,       [PASS_UI] = &pass_ui,
+	[PASS_READ] = &pass_read,
 };
 
 int pass_run(struct engine *engine, enum pass_id id, struct error *error)
@@ -30,12 +32,12 @@ void report_leave_out(struct engine_report *report, const char *name, const char
 		if (strcmp(report->left_out[i].name, name) == 0)
 			return;
 	if (report->left_out_count < ENGINE_MAX_LEFT_OUT)
-		report->left_out[report->left_out_count++] = (struct engine_left_out){ name, reason };
+		report->left_out[report->left_out_count++] = (struct engine_left_out){name, reason};
 }
 
 void report_begin(struct engine_report *report, uint64_t frame_id, const char *time_source)
 {
-	*report = (struct engine_report){ .frame_id = frame_id, .time_source = time_source, .pass_count = PASS_COUNT };
+	*report = (struct engine_report){.frame_id = frame_id, .time_source = time_source, .pass_count = PASS_COUNT};
 	for (int i = 0; i < PASS_COUNT; i++)
 		report->passes[i].name = passes[i]->name;
 }

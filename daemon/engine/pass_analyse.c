@@ -21,4 +21,4 @@ static int run(struct engine *engine, struct error *error)
 	return plan_make(&engine->plan, engine->job.frame, &params, error);
 }
 
-const struct pass pass_analyse = { .name = "analyse", .on_cpu = true, .prepare = prepare, .run = run };
+const struct pass pass_analyse = {.name = "analyse", .on_cpu = true, .prepare = prepare, .run = run};

@@ -28,7 +28,7 @@ static int make_targets(struct engine *engine, struct error *error)
 	gl->BindFramebuffer(GL_FRAMEBUFFER, engine->both_framebuffer);
 	gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, engine->real.texture, 0);
 	gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, engine->between.texture, 0);
-	gl->DrawBuffers(2, (const GLenum[]){ GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1 });
+	gl->DrawBuffers(2, (const GLenum[]){GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1});
 	return 0;
 }
 
@@ -81,4 +81,4 @@ static int run(struct engine *engine, struct error *error)
 	return 0;
 }
 
-const struct pass pass_compensate = { .name = "compensate", .prepare = prepare, .run = run };
+const struct pass pass_compensate = {.name = "compensate", .prepare = prepare, .run = run};

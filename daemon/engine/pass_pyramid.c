@@ -49,7 +49,7 @@ static int load_tiles(struct engine *engine, const struct tiles *tiles, struct e
 
 /* One picture from another by a program; the target's texels are 2^shift pixels of the original a side. */
 static int make(struct engine *engine, enum program_kind kind, const struct target *from, struct target *to,
-                uint32_t shift, int corners, struct error *error)
+				uint32_t shift, int corners, struct error *error)
 {
 	const struct gl *gl = engine_gl(engine);
 	const struct program *program = program_use(&engine->programs, gl, kind, 0, error);
@@ -99,4 +99,4 @@ static int run(struct engine *engine, struct error *error)
 	return result;
 }
 
-const struct pass pass_pyramid = { .name = "pyramid", .prepare = prepare, .run = run };
+const struct pass pass_pyramid = {.name = "pyramid", .prepare = prepare, .run = run};

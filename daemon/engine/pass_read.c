@@ -17,9 +17,9 @@ static int run(struct engine *engine, struct error *error)
 	gl->BindFramebuffer(GL_READ_FRAMEBUFFER, picture->framebuffer);
 	gl->PixelStorei(GL_PACK_ROW_LENGTH, (GLint)(image->stride / 4));
 	gl->ReadPixels(0, 0, (GLsizei)picture->width, (GLsizei)picture->height, gl->pixel_format, gl->pixel_type,
-	               image->data);
+				   image->data);
 	engine->report.bytes_down += 4 * (uint64_t)picture->width * picture->height;
 	return 0;
 }
 
-const struct pass pass_read = { .name = "read", .prepare = prepare, .run = run };
+const struct pass pass_read = {.name = "read", .prepare = prepare, .run = run};

@@ -31,7 +31,7 @@ static int run(struct engine *engine, struct error *error)
 	gl->BindVertexArray(engine->no_attributes);
 	gl->Enable(GL_SCISSOR_TEST);
 	gl->Scissor((GLint)bounds->left, (GLint)bounds->top, (GLsizei)(bounds->right - bounds->left),
-	            (GLsizei)(bounds->bottom - bounds->top));
+				(GLsizei)(bounds->bottom - bounds->top));
 	gl->Enable(GL_BLEND);
 	gl->DrawArrays(GL_TRIANGLES, 0, 6);
 	gl->Disable(GL_BLEND);
@@ -40,4 +40,4 @@ static int run(struct engine *engine, struct error *error)
 	return 0;
 }
 
-const struct pass pass_ui = { .name = "ui", .prepare = prepare, .run = run };
+const struct pass pass_ui = {.name = "ui", .prepare = prepare, .run = run};

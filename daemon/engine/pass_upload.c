@@ -57,7 +57,7 @@ static int reserve_staging(struct engine *engine, size_t bytes, struct error *er
 
 /* `bounds`: NULL for the opaque picture, else those of what is not transparent. */
 static int upload(struct engine *engine, const struct target *target, const struct convert *convert,
-                  const struct pursuit_plane *plane, const uint8_t *data, struct bounds *bounds, struct error *error)
+				  const struct pursuit_plane *plane, const uint8_t *data, struct bounds *bounds, struct error *error)
 {
 	const struct gl *gl = engine_gl(engine);
 	size_t row_bytes = 4 * (size_t)plane->width;
@@ -76,7 +76,7 @@ static int upload(struct engine *engine, const struct target *target, const stru
 				widen(bounds, row, plane->width, y + i);
 		}
 		gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, (GLsizei)plane->width, (GLsizei)rows, gl->pixel_format,
-		                  gl->pixel_type, engine->staging);
+						  gl->pixel_type, engine->staging);
 	}
 	engine->report.bytes_up += row_bytes * plane->height;
 	return 0;
@@ -88,25 +88,26 @@ static int upload_color(struct engine *engine, int index, struct error *error)
 	int result = target_resize(&engine->color, engine_gl(engine), plane->width, plane->height, error);
 	if (result < 0)
 		return result;
-	convert_prepare(&engine->color_convert, plane->format, &plane->transfer, engine->params.curve, engine->params.gamma);
+	convert_prepare(&engine->color_convert, plane->format, &plane->transfer, engine->params.curve,
+					engine->params.gamma);
 	return upload(engine, &engine->color, &engine->color_convert, plane, engine->job.frame->planes[index], NULL, error);
 }
 
 static int upload_ui(struct engine *engine, int index, struct error *error)
 {
-	engine->ui_bounds = (struct bounds){ 0 };
+	engine->ui_bounds = (struct bounds){0};
 	if (index < 0)
 		return 0;
 	const struct pursuit_plane *plane = &engine->job.frame->header.planes[index];
 	if (plane->width != engine->color.width || plane->height != engine->color.height)
 		return error_set(error, -EINVAL, "the UI plane is %u x %u, must be as large as colour, %u x %u", plane->width,
-		                 plane->height, engine->color.width, engine->color.height);
+						 plane->height, engine->color.width, engine->color.height);
 	int result = target_resize(&engine->ui, engine_gl(engine), plane->width, plane->height, error);
 	if (result < 0)
 		return result;
 	convert_prepare(&engine->ui_convert, plane->format, NULL, engine->params.curve, engine->params.gamma);
 	return upload(engine, &engine->ui, &engine->ui_convert, plane, engine->job.frame->planes[index], &engine->ui_bounds,
-	              error);
+				  error);
 }
 
 static int run(struct engine *engine, struct error *error)
@@ -119,4 +120,4 @@ static int run(struct engine *engine, struct error *error)
 	return result < 0 ? result : upload_ui(engine, find_plane(&frame->header, PURSUIT_ROLE_UI), error);
 }
 
-const struct pass pass_upload = { .name = "upload", .prepare = prepare, .run = run };
+const struct pass pass_upload = {.name = "upload", .prepare = prepare, .run = run};

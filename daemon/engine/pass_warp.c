@@ -108,4 +108,4 @@ static int run(struct engine *engine, struct error *error)
 	return result;
 }
 
-const struct pass pass_warp = { .name = "warp", .prepare = prepare, .run = run };
+const struct pass pass_warp = {.name = "warp", .prepare = prepare, .run = run};

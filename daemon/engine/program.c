@@ -12,11 +12,11 @@
 static const struct {
 	const char *name, *vertex, *fragment;
 } sources[PROGRAM_KIND_COUNT] = {
-	[PROGRAM_PYRAMID] = { "pyramid", shader_tiles_vert, shader_pyramid_frag },
-	[PROGRAM_LOW] = { "low", shader_tiles_vert, shader_low_frag },
-	[PROGRAM_COMPENSATE] = { "compensate", shader_grid_vert, shader_compensate_frag },
-	[PROGRAM_WARP] = { "warp", shader_grid_vert, shader_warp_frag },
-	[PROGRAM_UI] = { "ui", shader_rectangle_vert, shader_ui_frag },
+	[PROGRAM_PYRAMID] = {"pyramid", shader_tiles_vert, shader_pyramid_frag},
+	[PROGRAM_LOW] = {"low", shader_tiles_vert, shader_low_frag},
+	[PROGRAM_COMPENSATE] = {"compensate", shader_grid_vert, shader_compensate_frag},
+	[PROGRAM_WARP] = {"warp", shader_grid_vert, shader_warp_frag},
+	[PROGRAM_UI] = {"ui", shader_rectangle_vert, shader_ui_frag},
 };
 
 static const char *const variant_defines[] = {
@@ -34,9 +34,9 @@ static const char *header(const struct gl *gl)
 }
 
 static GLuint compile(const struct gl *gl, GLenum stage, const char *name, const char *body, unsigned variant,
-                      struct error *error)
+					  struct error *error)
 {
-	const char *parts[8] = { header(gl) };
+	const char *parts[8] = {header(gl)};
 	GLsizei count = 1;
 	for (unsigned i = 0; i < sizeof(variant_defines) / sizeof(variant_defines[0]); i++)
 		if (variant & (1u << i))
@@ -53,7 +53,7 @@ static GLuint compile(const struct gl *gl, GLenum stage, const char *name, const
 	char log[400] = "";
 	gl->GetShaderInfoLog(shader, sizeof(log), NULL, log);
 	error_set(error, -ENOTSUP, "shader %s (%s, variant %u) is refused: %s", name,
-	          stage == GL_VERTEX_SHADER ? "vertex" : "fragment", variant, log);
+			  stage == GL_VERTEX_SHADER ? "vertex" : "fragment", variant, log);
 	gl->DeleteShader(shader);
 	return 0;
 }
@@ -91,7 +91,7 @@ static GLuint build(const struct gl *gl, enum program_kind kind, unsigned varian
 }
 
 const struct program *program_use(struct program_cache *cache, const struct gl *gl, enum program_kind kind,
-                                  unsigned variant, struct error *error)
+								  unsigned variant, struct error *error)
 {
 	struct program *program = &cache->programs[kind][variant];
 	if (!program->id) {

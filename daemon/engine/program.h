@@ -39,7 +39,7 @@ struct program_cache {
 
 /* The program, in use afterwards; NULL with the compiler's words. */
 const struct program *program_use(struct program_cache *cache, const struct gl *gl, enum program_kind kind,
-                                  unsigned variant, struct error *error);
+								  unsigned variant, struct error *error);
 void program_cache_finish(struct program_cache *cache, const struct gl *gl);
 
 #endif

@@ -65,10 +65,10 @@ struct engine {
 	GLuint tile_array, tile_vertices; /* rectangles to fill */
 	float *tile_numbers;              /* on their way there */
 	size_t tile_capacity;
-	struct target shown;              /* the displayed frame, if it is not one of the above */
-	GLuint both_framebuffer;          /* `real` and `between` at once */
-	GLuint no_attributes;             /* a vertex array with nothing in it */
-	GLuint depth, depth_framebuffer;  /* `shown` with depth; 0 until the first fold */
+	struct target shown;             /* the displayed frame, if it is not one of the above */
+	GLuint both_framebuffer;         /* `real` and `between` at once */
+	GLuint no_attributes;            /* a vertex array with nothing in it */
+	GLuint depth, depth_framebuffer; /* `shown` with depth; 0 until the first fold */
 	uint32_t depth_width, depth_height;
 	struct target ui;
 	struct bounds ui_bounds; /* pixels of the UI that are not wholly transparent */
@@ -78,12 +78,12 @@ struct engine {
 	uint32_t n;
 	double last_phase;
 	uint64_t real_interval_ns; /* as the pacer knows it; 0: as the frame says */
-	bool moves;       /* there is a plan with vertices */
-	bool has_depth;   /* depths differ, so that they settle what lies before what */
-	bool compensated; /* E and B differ from the original */
+	bool moves;                /* there is a plan with vertices */
+	bool has_depth;            /* depths differ, so that they settle what lies before what */
+	bool compensated;          /* E and B differ from the original */
 	enum { LEVELS_NONE = 0, LEVELS_MARKED, LEVELS_ALL } levels_made;
 	bool levels_everywhere; /* the next pyramid must cover all, not only the marked tiles */
-	double boost;     /* k */
+	double boost;           /* k */
 };
 
 static inline const struct gl *engine_gl(const struct engine *engine)

@@ -17,7 +17,7 @@ static void make_texture(struct target *target, const struct gl *gl, uint32_t wi
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
 	/* Format and type matter although there is no data: Mesa chooses the order in memory after them. */
 	gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, (GLsizei)width, (GLsizei)height, 0, gl->pixel_format, gl->pixel_type,
-	               NULL);
+				   NULL);
 }
 
 int target_resize(struct target *target, const struct gl *gl, uint32_t width, uint32_t height, struct error *error)
@@ -35,8 +35,8 @@ int target_resize(struct target *target, const struct gl *gl, uint32_t width, ui
 	GLenum code = gl->GetError();
 	if (status != GL_FRAMEBUFFER_COMPLETE || code != GL_NO_ERROR) {
 		target_finish(target, gl);
-		return error_set(error, -ENOMEM, "the renderer has no room for a picture of %u x %u (0x%x, 0x%x)", width, height,
-		                 status, code);
+		return error_set(error, -ENOMEM, "the renderer has no room for a picture of %u x %u (0x%x, 0x%x)", width,
+						 height, status, code);
 	}
 	target->width = width;
 	target->height = height;
@@ -47,7 +47,7 @@ void target_finish(struct target *target, const struct gl *gl)
 {
 	gl->DeleteFramebuffers(1, &target->framebuffer);
 	gl->DeleteTextures(1, &target->texture);
-	*target = (struct target){ 0 };
+	*target = (struct target){0};
 }
 
 void target_draw_to(const struct target *target, const struct gl *gl)

@@ -29,7 +29,7 @@ bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t 
 void tiles_finish(struct tiles *tiles)
 {
 	free(tiles->marked);
-	*tiles = (struct tiles){ 0 };
+	*tiles = (struct tiles){0};
 }
 
 struct range {
@@ -40,10 +40,10 @@ struct range {
 static struct range meet(float from, float to, uint32_t size, uint32_t count, uint32_t tile)
 {
 	if (!(to >= 0.0f) || !(from <= (float)size))
-		return (struct range){ 0, 0 };
+		return (struct range){0, 0};
 	uint32_t first = from > 0.0f ? (uint32_t)from / tile : 0;
 	uint32_t last = to < (float)size ? (uint32_t)to / tile : count - 1;
-	return (struct range){ first < count ? first : count - 1, (last < count ? last : count - 1) + 1 };
+	return (struct range){first < count ? first : count - 1, (last < count ? last : count - 1) + 1};
 }
 
 void tiles_mark(struct tiles *tiles, struct box box)
@@ -82,7 +82,7 @@ size_t tiles_most_numbers(const struct tiles *tiles)
 
 static float *write_rectangle(float *numbers, float left, float top, float right, float bottom)
 {
-	const float corners[12] = { left, top, right, top, left, bottom, left, bottom, right, top, right, bottom };
+	const float corners[12] = {left, top, right, top, left, bottom, left, bottom, right, top, right, bottom};
 	memcpy(numbers, corners, sizeof(corners));
 	return numbers + 12;
 }
@@ -98,7 +98,8 @@ size_t tiles_write(const struct tiles *tiles, float *numbers)
 			uint32_t first = i;
 			while (i + 1 < tiles->columns && row[i + 1])
 				i++;
-			at = write_rectangle(at, tile * (float)first, tile * (float)j, tile * (float)(i + 1), tile * (float)(j + 1));
+			at =
+				write_rectangle(at, tile * (float)first, tile * (float)j, tile * (float)(i + 1), tile * (float)(j + 1));
 		}
 	return (size_t)(at - numbers);
 }

@@ -11,7 +11,7 @@
 
 struct tiles {
 	uint32_t width, height; /* of the picture, pixels */
-	uint32_t tile; /* pixels a side */
+	uint32_t tile;          /* pixels a side */
 	uint32_t columns, rows;
 	uint8_t *marked;
 	uint32_t capacity;

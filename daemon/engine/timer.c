@@ -14,7 +14,7 @@ uint64_t timer_now_ns(void)
 
 void timer_init(struct timer *timer, const struct gl *gl, bool software, bool finish)
 {
-	*timer = (struct timer){ .finish = finish, .queries = gl->timer_queries && !software && !finish };
+	*timer = (struct timer){.finish = finish, .queries = gl->timer_queries && !software && !finish};
 	if (timer->queries)
 		gl->GenQueries(TIMER_QUERIES, timer->ids);
 }
@@ -23,7 +23,7 @@ void timer_finish(struct timer *timer, const struct gl *gl)
 {
 	if (timer->queries)
 		gl->DeleteQueries(TIMER_QUERIES, timer->ids);
-	*timer = (struct timer){ 0 };
+	*timer = (struct timer){0};
 }
 
 const char *timer_source(const struct timer *timer)

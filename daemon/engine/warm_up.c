@@ -25,12 +25,12 @@ static void draw(struct planes *planes)
 static void describe(struct frame *frame, const struct planes *planes)
 {
 	static const uint32_t kinds[][3] = {
-		{ PURSUIT_ROLE_COLOR, PURSUIT_FORMAT_BGRA8, 4 },
-		{ PURSUIT_ROLE_UI, PURSUIT_FORMAT_BGRA8, 4 },
-		{ PURSUIT_ROLE_DEPTH, PURSUIT_FORMAT_DEPTH32F, 4 },
-		{ PURSUIT_ROLE_MOTION, PURSUIT_FORMAT_RG32F, 8 },
+		{PURSUIT_ROLE_COLOR, PURSUIT_FORMAT_BGRA8, 4},
+		{PURSUIT_ROLE_UI, PURSUIT_FORMAT_BGRA8, 4},
+		{PURSUIT_ROLE_DEPTH, PURSUIT_FORMAT_DEPTH32F, 4},
+		{PURSUIT_ROLE_MOTION, PURSUIT_FORMAT_RG32F, 8},
 	};
-	const void *const data[] = { planes->color, planes->ui, planes->depth, planes->motion };
+	const void *const data[] = {planes->color, planes->ui, planes->depth, planes->motion};
 	struct pursuit_frame_header *header = &frame->header;
 	header->frame_id = 1;
 	header->real_interval_ns = 25000000;
@@ -39,8 +39,13 @@ static void describe(struct frame *frame, const struct planes *planes)
 	header->plane_count = 4;
 	for (int i = 0; i < 4; i++) {
 		header->planes[i] = (struct pursuit_plane){
-			.role = kinds[i][0], .format = kinds[i][1], .storage = PURSUIT_STORAGE_MEMORY, .width = SIDE, .height = SIDE,
-			.stride = (uint64_t)kinds[i][2] * SIDE, .size = (uint64_t)kinds[i][2] * SIDE * SIDE,
+			.role = kinds[i][0],
+			.format = kinds[i][1],
+			.storage = PURSUIT_STORAGE_MEMORY,
+			.width = SIDE,
+			.height = SIDE,
+			.stride = (uint64_t)kinds[i][2] * SIDE,
+			.size = (uint64_t)kinds[i][2] * SIDE * SIDE,
 			.transfer.curve = PURSUIT_CURVE_SRGB,
 		};
 		frame->planes[i] = data[i];
@@ -50,10 +55,9 @@ static void describe(struct frame *frame, const struct planes *planes)
 static int show_all(struct engine *engine, const struct frame *frame, struct planes *planes, struct error *error)
 {
 	static const struct engine_request requests[] = {
-		{ ENGINE_SHOW_REAL, 0.0 }, { ENGINE_SHOW_REAL, 0.2 }, { ENGINE_SHOW_IN_BETWEEN, 0.5 }
-	};
-	struct engine_begin_params begin = { .n = 3, .last_phase = -1.0 };
-	struct engine_image image = { &planes->color[0][0][0], 4 * SIDE };
+		{ENGINE_SHOW_REAL, 0.0}, {ENGINE_SHOW_REAL, 0.2}, {ENGINE_SHOW_IN_BETWEEN, 0.5}};
+	struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
+	struct engine_image image = {&planes->color[0][0][0], 4 * SIDE};
 	int result = engine_begin(engine, frame, &begin, error);
 	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]) && result == 0; i++)
 		result = engine_render(engine, &requests[i], &image, error);
@@ -62,8 +66,8 @@ static int show_all(struct engine *engine, const struct frame *frame, struct pla
 
 int warm_up(struct engine *engine, struct error *error)
 {
-	struct frame frame = { 0 };
-	struct planes planes = { 0 };
+	struct frame frame = {0};
+	struct planes planes = {0};
 	draw(&planes);
 	describe(&frame, &planes);
 	return show_all(engine, &frame, &planes, error);

@@ -45,15 +45,15 @@ static struct gradient triangle_gradient(const struct plan_vertex *vertices, con
 	float bx = b->x - a->x, by = b->y - a->y, cx = c->x - a->x, cy = c->y - a->y;
 	float bu = b->ux - a->ux, bv = b->uy - a->uy, cu = c->ux - a->ux, cv = c->uy - a->uy;
 	float scale = 1.0f / (bx * cy - cx * by);
-	return (struct gradient){ (bu * cy - cu * by) * scale, (cu * bx - bu * cx) * scale, (bv * cy - cv * by) * scale,
-		                      (cv * bx - bv * cx) * scale };
+	return (struct gradient){(bu * cy - cu * by) * scale, (cu * bx - bu * cx) * scale, (bv * cy - cv * by) * scale,
+							 (cv * bx - bv * cx) * scale};
 }
 
 static struct map triangle_map(const struct plan_vertex *vertices, const uint32_t *index, float phase)
 {
 	struct gradient g = triangle_gradient(vertices, index);
 	float xx = 1.0f + phase * g.xx, xy = phase * g.xy, yx = phase * g.yx, yy = 1.0f + phase * g.yy;
-	return (struct map){ xx * xx + xy * xy + yx * yx + yy * yy, xx * yy - xy * yx };
+	return (struct map){xx * xx + xy * xy + yx * yx + yy * yy, xx * yy - xy * yx};
 }
 
 /* Whether the larger singular value is above the limit; true for degenerate triangles. */
@@ -61,13 +61,13 @@ static bool stretches(struct map map, float limit)
 {
 	float squared = limit * limit;
 	bool below = map.norm <= 2.0f * squared &&
-	             squared * squared - squared * map.norm + map.determinant * map.determinant >= 0.0f;
+				 squared * squared - squared * map.norm + map.determinant * map.determinant >= 0.0f;
 	return !below;
 }
 
 static struct box triangle_box(const struct plan_vertex *vertices, const uint32_t *index, float phase, float margin)
 {
-	struct box box = { INFINITY, INFINITY, -INFINITY, -INFINITY };
+	struct box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
 	for (int i = 0; i < 3; i++) {
 		const struct plan_vertex *vertex = &vertices[index[i]];
 		float x = vertex->x + phase * vertex->ux, y = vertex->y + phase * vertex->uy;
@@ -81,7 +81,7 @@ static struct box triangle_box(const struct plan_vertex *vertices, const uint32_
 
 static struct box box_grown(struct box box, float margin)
 {
-	return (struct box){ box.left - margin, box.top - margin, box.right + margin, box.bottom + margin };
+	return (struct box){box.left - margin, box.top - margin, box.right + margin, box.bottom + margin};
 }
 
 static bool reserve(struct warp_mesh *mesh, uint32_t count)
@@ -113,11 +113,11 @@ static void make_buffers(struct warp_mesh *mesh, const struct gl *gl)
 	gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->indices);
 	GLsizei stride = sizeof(struct plan_vertex);
 	gl->VertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, stride,
-	                        (const void *)offsetof(struct plan_vertex, x));
+							(const void *)offsetof(struct plan_vertex, x));
 	gl->VertexAttribPointer(ATTRIBUTE_DISPLACEMENT, 2, GL_FLOAT, GL_FALSE, stride,
-	                        (const void *)offsetof(struct plan_vertex, ux));
+							(const void *)offsetof(struct plan_vertex, ux));
 	gl->VertexAttribPointer(ATTRIBUTE_DEPTH, 1, GL_FLOAT, GL_FALSE, stride,
-	                        (const void *)offsetof(struct plan_vertex, z));
+							(const void *)offsetof(struct plan_vertex, z));
 	gl->EnableVertexAttribArray(ATTRIBUTE_POSITION);
 	gl->EnableVertexAttribArray(ATTRIBUTE_DISPLACEMENT);
 	gl->EnableVertexAttribArray(ATTRIBUTE_DEPTH);
@@ -132,7 +132,7 @@ static void measure_triangles(struct warp_mesh *mesh)
 }
 
 int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, float tolerance,
-                    struct error *error)
+					struct error *error)
 {
 	mesh->plan = plan;
 	if (!reserve(mesh, plan->index_count))
@@ -157,7 +157,7 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct pl
 /* Appends the triangles of some kinds to the lists. */
 static struct warp_list collect(struct warp_mesh *mesh, uint32_t first, unsigned mask, unsigned kind)
 {
-	struct warp_list list = { first, 0 };
+	struct warp_list list = {first, 0};
 	uint32_t *to = mesh->lists + first;
 	for (uint32_t i = 0; i < mesh->count; i += 3)
 		if ((mesh->kinds[i / 3] & mask) == kind) {
@@ -181,7 +181,7 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_
 	float phase = plan->last_phase;
 	uint32_t levels_tile = LEVELS_TILE >> level ? LEVELS_TILE : 1u << level;
 	if (!tiles_begin(&mesh->low, plan->width, plan->height, LOW_TILE) ||
-	    !tiles_begin(&mesh->levels, plan->width, plan->height, levels_tile))
+		!tiles_begin(&mesh->levels, plan->width, plan->height, levels_tile))
 		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
 	for (uint32_t i = 0; i < mesh->count; i += 3) {
 		mesh->kinds[i / 3] = KIND_PLAIN;
@@ -236,7 +236,7 @@ static uint32_t end_of(struct warp_list list)
 }
 
 int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, bool tears, bool keep_order,
-                   struct error *error)
+				   struct error *error)
 {
 	const struct plan *plan = mesh->plan;
 	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE))
@@ -268,7 +268,7 @@ void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl)
 	free(mesh->lists);
 	free(mesh->wildness);
 	free(mesh->kinds);
-	*mesh = (struct warp_mesh){ 0 };
+	*mesh = (struct warp_mesh){0};
 }
 
 void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct warp_list list)
@@ -277,5 +277,5 @@ void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct wa
 		return;
 	gl->BindVertexArray(mesh->array);
 	gl->DrawElements(GL_TRIANGLES, (GLsizei)list.count, GL_UNSIGNED_INT,
-	                 (const void *)((size_t)list.first * sizeof(uint32_t)));
+					 (const void *)((size_t)list.first * sizeof(uint32_t)));
 }

@@ -29,18 +29,18 @@ struct warp_mesh {
 	const struct plan *plan;
 	struct merge merge;
 	struct tiles folds;  /* at the phase sorted for, where triangles may lie over each other */
-	struct tiles low;     /* of the source, where L is needed up to the last phase */
-	struct tiles levels;  /* and where the pyramid under it is */
-	uint32_t *triangles;  /* merged, 3 indices each */
-	uint32_t count;       /* indices of them */
-	float *wildness;      /* by triangle: squared norm of the displacement's gradient */
-	uint8_t *kinds;       /* by triangle: what it needs at the phase sorted for */
-	uint32_t *lists;      /* on their way to the index buffer */
-	uint32_t capacity;    /* indices */
+	struct tiles low;    /* of the source, where L is needed up to the last phase */
+	struct tiles levels; /* and where the pyramid under it is */
+	uint32_t *triangles; /* merged, 3 indices each */
+	uint32_t count;      /* indices of them */
+	float *wildness;     /* by triangle: squared norm of the displacement's gradient */
+	uint8_t *kinds;      /* by triangle: what it needs at the phase sorted for */
+	uint32_t *lists;     /* on their way to the index buffer */
+	uint32_t capacity;   /* indices */
 	/* What warp_mesh_sort() and warp_mesh_sort_doubtful() found; the index buffer holds one or the other. */
-	struct warp_list plain;  /* neither torn nor over each other */
-	struct warp_list torn;   /* torn, not over each other */
-	struct warp_list folded; /* perhaps over each other, in drawing order */
+	struct warp_list plain;       /* neither torn nor over each other */
+	struct warp_list torn;        /* torn, not over each other */
+	struct warp_list folded;      /* perhaps over each other, in drawing order */
 	struct warp_list folded_torn; /* these among them that are torn; if `keep_order` they are in `folded` too */
 	bool keep_order;
 	struct warp_list doubtful;
@@ -52,7 +52,7 @@ struct warp_mesh {
  * off for cells to be merged; negative: none are. 0 or -ENOMEM with a sentence.
  */
 int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, float tolerance,
-                    struct error *error);
+					struct error *error);
 void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl);
 
 /*
@@ -66,7 +66,7 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_
  * each other is drawn as one list. 0 or -ENOMEM with a sentence.
  */
 int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, bool tears, bool keep_order,
-                   struct error *error);
+				   struct error *error);
 
 void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct warp_list list);
 

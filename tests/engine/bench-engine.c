@@ -55,12 +55,12 @@ static void fail(const struct error *error)
 static void run_frame(struct bench *bench, int index)
 {
 	struct error error;
-	struct engine_image image = { bench->out, 4 * (size_t)bench->width };
-	struct engine_begin_params begin = { .n = bench->n, .last_phase = -1.0 };
+	struct engine_image image = {bench->out, 4 * (size_t)bench->width};
+	struct engine_begin_params begin = {.n = bench->n, .last_phase = -1.0};
 	if (engine_begin(bench->engine, &bench->pictures[index % PICTURES].frame, &begin, &error) < 0)
 		fail(&error);
 	for (uint32_t i = 0; i < bench->n; i++) {
-		struct engine_request request = { i ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, (double)i / bench->n };
+		struct engine_request request = {i ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, (double)i / bench->n};
 		if (engine_render(bench->engine, &request, &image, &error) < 0)
 			fail(&error);
 	}
@@ -97,7 +97,7 @@ static void print(struct bench *bench, const struct engine_report *report)
 {
 	for (uint32_t k = 0; k < report->pass_count; k++)
 		printf("engine/%ux%u/n%u/%s %.2f ms\n", bench->width, bench->height, bench->n, report->passes[k].name,
-		       median(bench->ms[k]));
+			   median(bench->ms[k]));
 }
 
 static void bench_size(const struct engine_params *params, uint32_t width, uint32_t height)
@@ -120,7 +120,7 @@ static void bench_size(const struct engine_params *params, uint32_t width, uint3
 		const struct engine_report *report = engine_get_report(bench.engine);
 		printf("engine/%ux%u/n%u/total %.2f ms\n", width, height, bench.n, median(bench.ms[ENGINE_MAX_PASSES]));
 		printf("# %s, %u triangles, %u doubtful, %u folded\n", engine_get_info(bench.engine)->renderer,
-		       report->triangles, report->doubtful, report->folded);
+			   report->triangles, report->doubtful, report->folded);
 		fflush(stdout);
 		engine_destroy(&bench.engine);
 	}
@@ -131,8 +131,8 @@ static void bench_size(const struct engine_params *params, uint32_t width, uint3
 
 int main(int argc, char **argv)
 {
-	static const uint32_t sizes[][2] = { { 640, 360 }, { 1024, 1024 }, { 1920, 1080 } };
-	struct engine_params params = { .method = argc > 2 ? argv[2] : NULL };
+	static const uint32_t sizes[][2] = {{640, 360}, {1024, 1024}, {1920, 1080}};
+	struct engine_params params = {.method = argc > 2 ? argv[2] : NULL};
 	if (argc > 1 && strcmp(argv[1], "surfaceless") == 0)
 		params.context = ENGINE_CONTEXT_EGL_SURFACELESS;
 	else if (argc > 1 && strcmp(argv[1], "osmesa") == 0)

@@ -18,8 +18,8 @@ static void save(struct engine *engine, const char *folder, const char *name, en
 	uint32_t width, height;
 	engine_get_size(engine, &width, &height);
 	uint8_t *pixels = malloc(4 * (size_t)width * height);
-	struct engine_image image = { pixels, 4 * (size_t)width };
-	struct engine_request request = { show, phase };
+	struct engine_image image = {pixels, 4 * (size_t)width};
+	struct engine_request request = {show, phase};
 	struct error error;
 	char path[512];
 	snprintf(path, sizeof(path), "%s/%s.png", folder, name);
@@ -33,14 +33,14 @@ int main(int argc, char **argv)
 	if (argc < 2)
 		return 2;
 	uint32_t width = argc > 3 ? (uint32_t)atoi(argv[2]) : 640, height = argc > 3 ? (uint32_t)atoi(argv[3]) : 360;
-	struct engine_params params = { .method = argc > 4 ? argv[4] : NULL };
+	struct engine_params params = {.method = argc > 4 ? argv[4] : NULL};
 	params.blur = argc > 5 ? (enum engine_blur)atoi(argv[5]) : ENGINE_BLUR_DOUBTFUL;
 	struct error error;
 	struct engine *engine = engine_create(&params, &error);
 	struct picture picture, truth;
 	picture_init(&picture, width, height, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
 	picture_draw_layers(&picture, 0.0);
-	struct engine_begin_params begin = { .n = 3, .last_phase = -1.0 };
+	struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
 	if (!engine || engine_begin(engine, &picture.frame, &begin, &error) < 0) {
 		fprintf(stderr, "%s\n", error.text);
 		return 1;

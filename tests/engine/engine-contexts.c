@@ -26,13 +26,13 @@ static struct engine *make(void)
 
 /* The displayed frame; the caller frees it. */
 static uint8_t *render(struct engine *engine, const struct picture *picture, uint32_t n, enum engine_show show,
-                       double phase)
+					   double phase)
 {
-	struct error error = { "" };
-	struct engine_begin_params begin = { .n = n, .last_phase = -1.0 };
-	struct engine_request request = { show, phase };
+	struct error error = {""};
+	struct engine_begin_params begin = {.n = n, .last_phase = -1.0};
+	struct engine_request request = {show, phase};
 	uint8_t *pixels = calloc(picture->height, 4 * (size_t)picture->width);
-	struct engine_image image = { pixels, 4 * (size_t)picture->width };
+	struct engine_image image = {pixels, 4 * (size_t)picture->width};
 	CHECK_INT(engine_begin(engine, &picture->frame, &begin, &error), 0);
 	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
 	if (error.text[0])
@@ -101,7 +101,7 @@ static void test_resting_part_passes_through(void)
 		for (uint32_t x = 0; x < picture.width; x++)
 			if (x > 160 || y > 160)
 				changed += memcmp(picture_row(&picture, PURSUIT_ROLE_COLOR, y) + 4 * x,
-				                  pixels + 4 * ((size_t)y * picture.width + x), 3) != 0;
+								  pixels + 4 * ((size_t)y * picture.width + x), 3) != 0;
 	CHECK_INT(changed, 0);
 	CHECK(count_changed(&picture, pixels) > 500);
 	free(pixels);
@@ -150,7 +150,7 @@ static void check_format(struct engine *engine, uint32_t format, bool gamma)
 	picture_init(&picture, 300, 211, format, 0);
 	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, format);
 	if (gamma)
-		picture.frame.header.planes[0].transfer = (struct pursuit_transfer){ PURSUIT_CURVE_GAMMA, 1.8f, 0.0f, 1.0f };
+		picture.frame.header.planes[0].transfer = (struct pursuit_transfer){PURSUIT_CURVE_GAMMA, 1.8f, 0.0f, 1.0f};
 	uint8_t *pixels = render(engine, &picture, 2, ENGINE_SHOW_REAL, 0.0);
 	uint32_t bytes = pursuit_format_bytes(format);
 	long wrong = 0;
@@ -181,12 +181,12 @@ static void test_formats(void)
 
 static void test_sizes_change(void)
 {
-	static const uint32_t sizes[][2] = { { 1, 1 }, { 1, 9 }, { 7, 5 }, { 640, 360 }, { 333, 77 }, { 2, 300 }, { 1, 1 } };
+	static const uint32_t sizes[][2] = {{1, 1}, {1, 9}, {7, 5}, {640, 360}, {333, 77}, {2, 300}, {1, 1}};
 	struct engine *engine = make();
 	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
 		struct picture picture;
 		picture_init(&picture, sizes[i][0], sizes[i][1], PURSUIT_FORMAT_BGRA8,
-		             PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
+					 PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
 		picture_draw_layers(&picture, 0.0);
 		uint8_t *warped = render(engine, &picture, 3, ENGINE_SHOW_IN_BETWEEN, 0.66);
 		uint8_t *plain = render(engine, &picture, 3, ENGINE_SHOW_PLAIN, 0.0);
@@ -206,10 +206,10 @@ static void test_refuses(void)
 {
 	struct engine *engine = make();
 	struct picture picture;
-	struct error error = { "" };
-	struct engine_begin_params begin = { .n = 2 };
-	struct engine_image image = { NULL, 0 };
-	struct engine_request request = { ENGINE_SHOW_REAL, 0.0 };
+	struct error error = {""};
+	struct engine_begin_params begin = {.n = 2};
+	struct engine_image image = {NULL, 0};
+	struct engine_request request = {ENGINE_SHOW_REAL, 0.0};
 	CHECK_INT(engine_render(engine, &request, &image, &error), -EINVAL);
 	picture_init(&picture, 8, 8, PURSUIT_FORMAT_BGRA8, 0);
 	picture.frame.header.planes[0].width = 1u << 20;
@@ -234,8 +234,8 @@ static void test_refuses(void)
 static void test_turns(void)
 {
 	struct error error;
-	const struct engine_params other = { 0 };
-	struct engine *engines[3] = { make(), engine_create(&other, &error), make() };
+	const struct engine_params other = {0};
+	struct engine *engines[3] = {make(), engine_create(&other, &error), make()};
 	struct picture picture;
 	picture_init(&picture, 200, 150, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_draw_layers(&picture, 0.0);
@@ -271,7 +271,7 @@ int main(int argc, char **argv)
 	if (!engine)
 		SKIP(error.text);
 	printf("%s: %s, %s\n", engine_get_info(engine)->context, engine_get_info(engine)->renderer,
-	       engine_get_info(engine)->version);
+		   engine_get_info(engine)->version);
 	engine_destroy(&engine);
 	RUN(test_life);
 	RUN(test_still_passes_through);

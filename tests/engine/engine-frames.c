@@ -11,14 +11,14 @@ static struct engine *engine;
 
 static void set(struct engine_params params)
 {
-	struct error error = { "" };
+	struct error error = {""};
 	CHECK_INT(engine_set_params(engine, &params, &error), 0);
 }
 
 static void begin(const struct picture *picture, uint32_t n)
 {
-	struct error error = { "" };
-	struct engine_begin_params params = { .n = n, .last_phase = -1.0 };
+	struct error error = {""};
+	struct engine_begin_params params = {.n = n, .last_phase = -1.0};
 	CHECK_INT(engine_begin(engine, &picture->frame, &params, &error), 0);
 	if (error.text[0])
 		fprintf(stderr, "%s\n", error.text);
@@ -26,10 +26,10 @@ static void begin(const struct picture *picture, uint32_t n)
 
 static uint8_t *show(const struct picture *picture, enum engine_show what, double phase)
 {
-	struct error error = { "" };
-	struct engine_request request = { what, phase };
+	struct error error = {""};
+	struct engine_request request = {what, phase};
 	uint8_t *pixels = calloc(picture->height, 4 * (size_t)picture->width);
-	struct engine_image image = { pixels, 4 * (size_t)picture->width };
+	struct engine_image image = {pixels, 4 * (size_t)picture->width};
 	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
 	return pixels;
 }
@@ -53,7 +53,7 @@ static void test_hold(void)
 	struct picture picture;
 	picture_init(&picture, 160, 90, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_draw_layers(&picture, 0.0);
-	set((struct engine_params){ .method = "hold" });
+	set((struct engine_params){.method = "hold"});
 	begin(&picture, 3);
 	uint8_t *pixels = show(&picture, ENGINE_SHOW_IN_BETWEEN, 0.66);
 	CHECK(memcmp(pixels, picture_row(&picture, PURSUIT_ROLE_COLOR, 0), bytes_of(&picture)) == 0);
@@ -68,7 +68,7 @@ static void test_every_n(void)
 	struct picture picture;
 	picture_init(&picture, 320, 180, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_draw_layers(&picture, 0.0);
-	set((struct engine_params){ .method = "grid" });
+	set((struct engine_params){.method = "grid"});
 	for (uint32_t n = 1; n <= 8; n++) {
 		begin(&picture, n);
 		for (uint32_t i = 0; i < n; i++) {
@@ -88,11 +88,11 @@ static void test_every_n(void)
 
 static void test_phases(void)
 {
-	static const double phases[] = { 0.0, 0.05, -0.05, -1.0, 8.0, 1e300, -1e300, (double)NAN, (double)INFINITY };
+	static const double phases[] = {0.0, 0.05, -0.05, -1.0, 8.0, 1e300, -1e300, (double)NAN, (double)INFINITY};
 	struct picture picture;
 	picture_init(&picture, 200, 100, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_draw_layers(&picture, 0.0);
-	set((struct engine_params){ 0 });
+	set((struct engine_params){0});
 	begin(&picture, 2);
 	uint8_t *eight = show(&picture, ENGINE_SHOW_IN_BETWEEN, 8.0), *zero = show(&picture, ENGINE_SHOW_IN_BETWEEN, 0.0);
 	uint8_t *real = show(&picture, ENGINE_SHOW_REAL, 0.0);
@@ -118,7 +118,7 @@ static void test_rest(void)
 	struct picture picture;
 	picture_init(&picture, 64, 48, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_draw_layers(&picture, 0.0);
-	set((struct engine_params){ .blur = ENGINE_BLUR_EVERYWHERE });
+	set((struct engine_params){.blur = ENGINE_BLUR_EVERYWHERE});
 	picture.frame.header.flags = PURSUIT_FRAME_CUT;
 	begin(&picture, 2);
 	CHECK(left_out("extrapolation", "cut"));
@@ -172,7 +172,7 @@ static void test_ui(void)
 	struct picture picture;
 	picture_init(&picture, 256, 120, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
 	picture_draw_layers(&picture, 0.0);
-	set((struct engine_params){ 0 });
+	set((struct engine_params){0});
 	check_ui(&picture, ENGINE_SHOW_PLAIN);
 	check_ui(&picture, ENGINE_SHOW_IN_BETWEEN);
 	picture_finish(&picture);
@@ -184,7 +184,7 @@ static void check_covered(uint32_t seed, unsigned planes, float range, uint32_t 
 	struct picture picture;
 	picture_init(&picture, 301, 205, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_UI | planes);
 	memset(picture_row(&picture, PURSUIT_ROLE_UI, 0), 255,
-	       picture.frame.header.planes[frame_find_plane(&picture.frame.header, PURSUIT_ROLE_UI)].size);
+		   picture.frame.header.planes[frame_find_plane(&picture.frame.header, PURSUIT_ROLE_UI)].size);
 	memset(picture_row(&picture, PURSUIT_ROLE_COLOR, 0), 100, picture.frame.header.planes[0].size);
 	for (uint32_t y = 0; y < picture.height; y++)
 		for (uint32_t x = 0; x < picture.width; x++) {
@@ -200,7 +200,7 @@ static void check_covered(uint32_t seed, unsigned planes, float range, uint32_t 
 		begin(&picture, 4);
 		free(show(&picture, ENGINE_SHOW_PLAIN, 0.0));
 		memset(picture_row(&picture, PURSUIT_ROLE_UI, 0), 0,
-		       picture.frame.header.planes[frame_find_plane(&picture.frame.header, PURSUIT_ROLE_UI)].size);
+			   picture.frame.header.planes[frame_find_plane(&picture.frame.header, PURSUIT_ROLE_UI)].size);
 		begin(&picture, 4);
 		uint8_t *pixels = show(&picture, ENGINE_SHOW_IN_BETWEEN, i < 4 ? i * 0.25 : 8.0);
 		long wrong = 0;
@@ -209,17 +209,17 @@ static void check_covered(uint32_t seed, unsigned planes, float range, uint32_t 
 		CHECK_INT(wrong, 0);
 		free(pixels);
 		memset(picture_row(&picture, PURSUIT_ROLE_UI, 0), 255,
-		       picture.frame.header.planes[frame_find_plane(&picture.frame.header, PURSUIT_ROLE_UI)].size);
+			   picture.frame.header.planes[frame_find_plane(&picture.frame.header, PURSUIT_ROLE_UI)].size);
 	}
 	picture_finish(&picture);
 }
 
 static void test_covered(void)
 {
-	static const enum engine_blur blurs[] = { ENGINE_BLUR_DOUBTFUL, ENGINE_BLUR_OFF };
+	static const enum engine_blur blurs[] = {ENGINE_BLUR_DOUBTFUL, ENGINE_BLUR_OFF};
 	for (int i = 0; i < 2; i++) {
 		/* At a metre wide and 10 m away nothing is too fast to follow. */
-		set((struct engine_params){ .blur = blurs[i], .display_width_mm = 10.0f, .viewing_distance_mm = 10000.0f });
+		set((struct engine_params){.blur = blurs[i], .display_width_mm = 10.0f, .viewing_distance_mm = 10000.0f});
 		check_covered(1, PICTURE_DEPTH, 3.0f, 1);
 		check_covered(2, PICTURE_DEPTH, 40.0f, 1);
 		check_covered(3, 0, 40.0f, 1);
@@ -246,7 +246,7 @@ static void test_light(void)
 	picture_init(&picture, 128, 96, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 8);
 	picture_set_motion(&picture, 64, 40, 0.01f, 0.0f);
-	set((struct engine_params){ .blur = ENGINE_BLUR_EVERYWHERE });
+	set((struct engine_params){.blur = ENGINE_BLUR_EVERYWHERE});
 	for (uint32_t n = 2; n <= 4; n++) {
 		begin(&picture, n);
 		uint8_t *real = show(&picture, ENGINE_SHOW_REAL, 0.0), *between = show(&picture, ENGINE_SHOW_IN_BETWEEN, 0.0);
@@ -276,7 +276,7 @@ static void test_plan_is_printed(void)
 	char text[1024], small[8];
 	picture_init(&picture, 128, 96, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
 	picture_draw_layers(&picture, 0.0);
-	set((struct engine_params){ 0 });
+	set((struct engine_params){0});
 	begin(&picture, 2);
 	engine_print_plan(engine, text, sizeof(text));
 	CHECK(text[0] == '{' && strchr(text, '}'));
@@ -288,7 +288,7 @@ static void test_plan_is_printed(void)
 
 int main(void)
 {
-	const struct engine_params params = { 0 };
+	const struct engine_params params = {0};
 	struct error error;
 	engine = engine_create(&params, &error);
 	if (!engine)

@@ -9,17 +9,17 @@
 #include <string.h>
 
 static void add_plane(struct pursuit_frame_header *header, uint32_t role, uint32_t format, uint32_t width,
-                      uint32_t height)
+					  uint32_t height)
 {
 	struct pursuit_plane *plane = &header->planes[header->plane_count++];
-	*plane = (struct pursuit_plane){ .role = role, .format = format, .width = width, .height = height };
+	*plane = (struct pursuit_plane){.role = role, .format = format, .width = width, .height = height};
 	if (role == PURSUIT_ROLE_COLOR || role == PURSUIT_ROLE_UI)
 		plane->transfer.curve = format == PURSUIT_FORMAT_RGBA16F ? PURSUIT_CURVE_LINEAR : PURSUIT_CURVE_SRGB;
 }
 
 void picture_init(struct picture *picture, uint32_t width, uint32_t height, uint32_t format, unsigned planes)
 {
-	*picture = (struct picture){ .width = width, .height = height };
+	*picture = (struct picture){.width = width, .height = height};
 	struct pursuit_frame_header *header = &picture->frame.header;
 	header->frame_id = 1;
 	header->real_interval_ns = 25000000;
@@ -45,7 +45,7 @@ void picture_init(struct picture *picture, uint32_t width, uint32_t height, uint
 void picture_finish(struct picture *picture)
 {
 	free(picture->memory);
-	*picture = (struct picture){ 0 };
+	*picture = (struct picture){0};
 }
 
 uint8_t *picture_row(const struct picture *picture, uint32_t role, uint32_t y)
@@ -61,7 +61,7 @@ void picture_set_motion(const struct picture *picture, uint32_t x, uint32_t y, f
 {
 	uint8_t *row = picture_row(picture, PURSUIT_ROLE_MOTION, y);
 	if (row)
-		memcpy(row + 8 * (size_t)x, (const float[]){ mx, my }, 8);
+		memcpy(row + 8 * (size_t)x, (const float[]){mx, my}, 8);
 }
 
 void picture_set_depth(const struct picture *picture, uint32_t x, uint32_t y, float depth)
@@ -105,7 +105,7 @@ static struct disc disc_at(int index, double t, double width, double height)
 	double r[5];
 	for (int i = 0; i < 5; i++)
 		r[i] = (double)(picture_random(&state) & 0xffffu) / 65536.0;
-	struct disc disc = { .radius = (0.05 + 0.07 * r[0]) * height, .depth = 0.2 + 0.05 * index };
+	struct disc disc = {.radius = (0.05 + 0.07 * r[0]) * height, .depth = 0.2 + 0.05 * index};
 	disc.vx = (r[1] - 0.5) * 0.05 * width;
 	disc.vy = (r[2] - 0.5) * 0.03 * height;
 	disc.x = width * (0.1 + 0.8 * r[3]) + disc.vx * t;
@@ -121,7 +121,7 @@ static struct point ground_from_screen(double x, double y, double t, double widt
 	double depth = 1.0 / (1.4 + 0.6 * cy);
 	double angle = 0.006 * t;
 	double gx = cx * depth, gy = depth;
-	return (struct point){ gx * cos(angle) - gy * sin(angle) + 0.006 * t, gx * sin(angle) + gy * cos(angle) + 0.004 * t };
+	return (struct point){gx * cos(angle) - gy * sin(angle) + 0.006 * t, gx * sin(angle) + gy * cos(angle) + 0.004 * t};
 }
 
 static struct point screen_from_ground(struct point ground, double t, double width, double height)
@@ -130,7 +130,7 @@ static struct point screen_from_ground(struct point ground, double t, double wid
 	double ax = ground.x - 0.006 * t, ay = ground.y - 0.004 * t;
 	double gx = ax * cos(angle) + ay * sin(angle), depth = -ax * sin(angle) + ay * cos(angle);
 	double cy = (1.0 / depth - 1.4) / 0.6, cx = gx / depth;
-	return (struct point){ cx * height + 0.5 * width, cy * height + 0.5 * height };
+	return (struct point){cx * height + 0.5 * width, cy * height + 0.5 * height};
 }
 
 static uint32_t gray_mix(double r, double g, double b)
@@ -205,6 +205,6 @@ void picture_draw_discs(const struct picture *picture, double t)
 
 bool picture_write_png(const char *path, const uint8_t *bgra, uint32_t width, uint32_t height)
 {
-	png_image image = { .version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_BGRA };
+	png_image image = {.version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_BGRA};
 	return png_image_write_to_file(&image, path, 0, bgra, 0, NULL);
 }
