@@ -8,6 +8,7 @@
 #include "daemon/render.h"
 
 #define MS UINT64_C(1000000)
+#define MARGIN_STEP UINT64_C(500000)
 #define ENGINE_FIRST_DELAY (100 * MS)
 #define ENGINE_LAST_DELAY (5000 * MS)
 
@@ -89,9 +90,7 @@ static void lose_engine(struct render *render, const char *why)
 	if (render->engine_delay_ns > ENGINE_LAST_DELAY)
 		render->engine_delay_ns = ENGINE_LAST_DELAY;
 	render->engine_retry_ns = clock_now(render->clock) + render->engine_delay_ns;
-	render->owner.lock_stats(render->owner.data);
 	render->stats->engine_losses++;
-	render->owner.unlock_stats(render->owner.data);
 	log_warning(render->log, "the engine is lost, to be made anew in %u ms: %s",
 				(unsigned)(render->engine_delay_ns / MS), why);
 }
@@ -163,9 +162,7 @@ void draw_count_report(struct render *render)
 		return;
 	const struct engine_report *report = engine_get_report(render->engine);
 	render->report_due = false;
-	render->owner.lock_stats(render->owner.data);
 	stats_add_report(render->stats, report);
-	render->owner.unlock_stats(render->owner.data);
 }
 
 static bool left_out(const struct engine_report *report, const char *name)
@@ -190,11 +187,9 @@ static int take_counted(struct render *render, uint64_t now_ns, struct refusal *
 	_Atomic uint64_t *lost = &render->stream->counters.lost_frames;
 	const uint64_t lost_before = atomic_load(lost);
 	const int result = stream_take(render->stream, now_ns, &render->frame, refusal);
-	render->owner.lock_stats(render->owner.data);
 	render->stats->lost_real_frames += atomic_load(lost) - lost_before;
 	render->stats->received_frames += result == 1;
 	render->stats->refused_frames += result < 0;
-	render->owner.unlock_stats(render->owner.data);
 	return result;
 }
 
@@ -215,9 +210,7 @@ static bool take(struct render *render, uint64_t now_ns)
 	render->owner.record(render->owner.data, &render->frame);
 	pacer_add_frame(&render->pacer, &frame);
 	render->group++;
-	render->owner.lock_stats(render->owner.data);
 	showing_add_frame(&render->showing, render->group, render->stream, &render->frame);
-	render->owner.unlock_stats(render->owner.data);
 	return true;
 }
 
@@ -241,6 +234,16 @@ static bool begin(struct render *render, const struct pacer_decision *decision)
 	return render->begun;
 }
 
+/* Settles where one real frame in two hundred is late: a larger margin is delay, a smaller one is judder. */
+static void adapt_margin(struct render *render, bool late)
+{
+	const uint64_t most_ns = (uint64_t)grid_period_ns(&render->grid);
+	if (late)
+		render->margin_ns = render->margin_ns + MARGIN_STEP < most_ns ? render->margin_ns + MARGIN_STEP : most_ns;
+	else
+		render->margin_ns -= render->margin_ns < MARGIN_STEP / 200 ? render->margin_ns : MARGIN_STEP / 200;
+}
+
 /* Queues the real frame; if its vblank is over, for the next one: it is late, never lost. */
 static int queue_real(struct render *render, const struct presenter_image *image, struct pacer_decision *decision,
 					  uint64_t *vblank)
@@ -256,11 +259,8 @@ static int queue_real(struct render *render, const struct presenter_image *image
 		*decision = pacer_decide(&render->pacer, *vblank);
 		decision->phase = phase;
 	}
-	if (late) {
-		render->owner.lock_stats(render->owner.data);
-		render->stats->late_real_frames++;
-		render->owner.unlock_stats(render->owner.data);
-	}
+	render->stats->late_real_frames += late;
+	adapt_margin(render, late);
 	return result;
 }
 
@@ -270,7 +270,7 @@ static void settle_real(struct render *render, const struct pacer_decision *deci
 	const struct engine_report *report = engine_get_report(render->engine);
 	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
 	const uint64_t next = pacer_next_real_vblank(&render->pacer);
-	const uint64_t lead = render->real_cost.safe_ns + MS;
+	const uint64_t lead = render_real_cost(render) + MS;
 
 	showing_plan(&render->showing, vblank, SHOWING_REAL);
 	render->n = decision->n;
@@ -296,8 +296,7 @@ void draw_real(struct render *render, uint64_t now_ns)
 		render->take_again_ns = grid_time(&render->grid, grid_at_or_after(&render->grid, now_ns + 1));
 		return;
 	}
-	const uint64_t cost = render->real_cost.count ? render->real_cost.safe_ns : 5 * MS;
-	uint64_t vblank = grid_at_or_after(&render->grid, now_ns + cost);
+	uint64_t vblank = grid_at_or_after(&render->grid, now_ns + render_real_cost(render));
 	if (vblank <= render->real_vblank)
 		vblank = render->real_vblank + 1;
 	struct pacer_decision decision = pacer_decide(&render->pacer, vblank);

@@ -9,14 +9,12 @@
 #include <string.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "daemon/render.h"
 
 #define FLIPS 64u
-#define RENDER_NICE (-10)
 
 struct output {
 	struct output_params params;
@@ -38,28 +36,19 @@ struct output {
 	struct output_info info;
 
 	pthread_mutex_t stats_lock;
-	struct stats stats;
+	struct stats published;
 
 	pthread_mutex_t record_lock;
 	struct recorder *recorder;
 
 	/* the render thread's own */
+	struct stats stats;
 	struct render render;
 	struct stream *own[OUTPUT_STREAMS]; /* referenced copy of streams */
 	uint32_t own_count;
 };
 
 /* ---- called by the render thread's work ---- */
-
-static void lock_stats(void *data)
-{
-	pthread_mutex_lock(&((struct output *)data)->stats_lock);
-}
-
-static void unlock_stats(void *data)
-{
-	pthread_mutex_unlock(&((struct output *)data)->stats_lock);
-}
 
 static void record(void *data, const struct frame *frame)
 {
@@ -119,6 +108,18 @@ static void on_flip(void *data, const struct presenter_flip *flip)
 
 /* ---- the render thread ---- */
 
+/*
+ * Never waits for main: a thread of ordinary priority that was interrupted while
+ * it copies would hold this one up for many vblanks.
+ */
+static void publish_stats(struct output *output)
+{
+	if (pthread_mutex_trylock(&output->stats_lock) != 0)
+		return;
+	stats_publish(&output->stats, &output->published);
+	pthread_mutex_unlock(&output->stats_lock);
+}
+
 /* Sleeps until time_ns or until woken. */
 static void wait_for_work(struct output *output, uint64_t time_ns)
 {
@@ -167,6 +168,8 @@ static bool read_mailbox(struct output *output)
 
 	for (uint32_t i = 0; i < flip_count; i++)
 		render_flip(&output->render, &flips[i]);
+	if (flip_count > 0)
+		publish_stats(output);
 	if (changed)
 		adopt_streams(output, streams, stream_count);
 	for (uint32_t i = 0; i + 1 < output->own_count; i++)
@@ -191,7 +194,7 @@ static int start(struct output *output)
 		.clock = output->params.clock,
 		.log = output->params.log,
 		.stats = &output->stats,
-		.owner = {output, lock_stats, unlock_stats, record, report, engine_made},
+		.owner = {output, record, report, engine_made},
 	};
 	struct error error = {""};
 	const int result = render_init(&output->render, &presenter_params, &error);
@@ -208,28 +211,18 @@ static int start(struct output *output)
 	return result;
 }
 
-/*
- * A picture that is late is worth nothing, so this thread goes before ordinary
- * ones, and so do those that a software renderer starts from it. Mostly not
- * permitted (RLIMIT_NICE): no matter then.
- */
-static void raise_priority(const struct output *output)
-{
-	if (setpriority(PRIO_PROCESS, (id_t)gettid(), RENDER_NICE) < 0)
-		log_debug(output->params.log, "rendering at ordinary priority (%s)", strerror(errno));
-}
-
 static void *run(void *data)
 {
 	struct output *output = data;
 	pthread_setname_np(pthread_self(), "pursuit-render");
-	raise_priority(output);
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	if (start(output) == 0) {
 		while (read_mailbox(output)) {
 			const uint64_t next_ns = render_step(&output->render);
-			if (next_ns > clock_now(output->params.clock))
+			if (next_ns > clock_now(output->params.clock)) {
+				publish_stats(output);
 				wait_for_work(output, next_ns);
+			}
 		}
 	}
 	adopt_streams(output, NULL, 0);
@@ -398,6 +391,6 @@ void output_get_info(struct output *output, struct output_info *info)
 void output_get_stats(struct output *output, struct stats *stats)
 {
 	pthread_mutex_lock(&output->stats_lock);
-	*stats = output->stats;
+	*stats = output->published;
 	pthread_mutex_unlock(&output->stats_lock);
 }

@@ -78,7 +78,7 @@ bool output_next_event(struct output *output, struct output_event *event);
 struct recorder *output_set_recorder(struct output *output, struct recorder *recorder);
 
 void output_get_info(struct output *output, struct output_info *info);
-/* A copy of the statistics. */
+/* A copy of the statistics, as the render thread has published them last: at each vblank and when it goes to sleep. */
 void output_get_stats(struct output *output, struct stats *stats);
 
 #endif

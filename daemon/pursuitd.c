@@ -8,6 +8,7 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -24,6 +25,7 @@
 
 #define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_DAEMON)
 #define EXIT_USAGE 2
+#define DAEMON_NICE (-10)
 
 struct pursuitd {
 	struct settings settings;
@@ -165,6 +167,17 @@ static void on_signal(void *data, int number)
 	loop_quit(daemon->loop);
 }
 
+/*
+ * A picture that is late is worth nothing, so the daemon goes before ordinary
+ * programs, and so do the threads that a software renderer starts. Mostly not
+ * permitted (RLIMIT_NICE): no matter then.
+ */
+static void raise_priority(const struct log *log)
+{
+	if (setpriority(PRIO_PROCESS, 0, DAEMON_NICE) < 0)
+		log_debug(log, "running at ordinary priority (%s)", strerror(errno));
+}
+
 static int start(struct pursuitd *daemon, struct error *error)
 {
 	static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -172,6 +185,7 @@ static int start(struct pursuitd *daemon, struct error *error)
 
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN); /* a file size limit is met like a full disk */
+	raise_priority(&daemon->log);
 	clock_init_real(&daemon->clock);
 	daemon->loop = loop_create(error);
 	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)

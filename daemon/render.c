@@ -66,14 +66,17 @@ void render_skip_frames(struct render *render, struct stream *stream)
 
 void render_flip(struct render *render, const struct presenter_flip *flip)
 {
-	render->owner.lock_stats(render->owner.data);
 	showing_flip(&render->showing, flip);
-	render->owner.unlock_stats(render->owner.data);
 }
 
 static uint64_t estimate(const struct cost *cost)
 {
 	return cost->count ? cost->safe_ns : FIRST_COST_NS;
+}
+
+uint64_t render_real_cost(const struct render *render)
+{
+	return estimate(&render->real_cost) + render->margin_ns;
 }
 
 static uint64_t before(uint64_t time_ns, uint64_t span_ns)
@@ -106,7 +109,7 @@ static void skip_passed(struct render *render, uint64_t now_ns)
  */
 static uint64_t real_start(const struct render *render, uint64_t now_ns)
 {
-	const uint64_t cost = estimate(&render->real_cost);
+	const uint64_t cost = render_real_cost(render);
 	if (!render->begun || grid_at_or_after(&render->grid, now_ns + cost) > render->real_vblank)
 		return 0;
 	return before(grid_time(&render->grid, render->real_vblank), cost) + 1;
@@ -115,7 +118,7 @@ static uint64_t real_start(const struct render *render, uint64_t now_ns)
 /* A vblank before the real frame's lacks its in-between, and drawing that does not cost the real frame its vblank. */
 static bool fits_before_real(const struct render *render, uint64_t now_ns)
 {
-	const uint64_t real = estimate(&render->real_cost), between = estimate(&render->between_cost);
+	const uint64_t real = render_real_cost(render), between = estimate(&render->between_cost);
 	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + real);
 	return render->begun && render->pause_vblanks == 0 && render->next_vblank < vblank &&
 		   now_ns + between <= grid_time(&render->grid, render->next_vblank) &&
@@ -126,9 +129,7 @@ static bool fits_before_real(const struct render *render, uint64_t now_ns)
 
 static void close_all_frames(struct render *render)
 {
-	render->owner.lock_stats(render->owner.data);
 	showing_close_frames(&render->showing, render->group + 1);
-	render->owner.unlock_stats(render->owner.data);
 }
 
 /* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */
@@ -157,7 +158,7 @@ static uint64_t wind_down(struct render *render, uint64_t now_ns)
 {
 	if (render->paused)
 		return RENDER_NEVER;
-	const uint64_t start = before(grid_time(&render->grid, render->next_vblank), estimate(&render->real_cost));
+	const uint64_t start = before(grid_time(&render->grid, render->next_vblank), render_real_cost(render));
 	if (now_ns < start)
 		return start;
 	if (render->pause_vblanks < PLAIN_AFTER - 1) {
@@ -179,7 +180,7 @@ static uint64_t later_of(uint64_t a, uint64_t b)
 static uint64_t between_start(const struct render *render)
 {
 	const uint64_t vblank = render->next_vblank, time_ns = grid_time(&render->grid, vblank);
-	const uint64_t costs = later_of(estimate(&render->real_cost), estimate(&render->between_cost));
+	const uint64_t costs = later_of(render_real_cost(render), estimate(&render->between_cost));
 	if (vblank >= render->real_vblank + render->n || render->pause_vblanks > 0)
 		return before(time_ns, costs);
 	/* Not further ahead than the presenter's queue holds. */

@@ -31,8 +31,6 @@
 /* What the render thread calls on its owner. */
 struct render_owner {
 	void *data;
-	void (*lock_stats)(void *data);
-	void (*unlock_stats)(void *data);
 	void (*record)(void *data, const struct frame *frame);
 	void (*report)(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal);
 	void (*engine_made)(void *data, const struct engine_info *info);
@@ -49,7 +47,7 @@ struct render {
 	struct grid grid;
 	struct pacer pacer;
 	struct showing showing;
-	struct stats *stats; /* under the owner's lock */
+	struct stats *stats; /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
 
 	struct frame frame;    /* begun last */
@@ -67,6 +65,7 @@ struct render {
 	uint32_t pause_vblanks; /* that nothing was due at, in a row */
 	bool paused;           /* the presenter sleeps */
 	struct cost real_cost, between_cost, plain_cost;
+	uint64_t margin_ns; /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
 };
 
 /* On the render thread. 0 or -errno with a sentence. */
@@ -85,6 +84,9 @@ uint64_t render_step(struct render *render);
 
 /* Nothing is due at the vblanks from next_vblank to before this one. */
 void render_plan_pause_until(struct render *render, uint64_t vblank);
+
+/* What a real frame from its intake to its picture is expected to take. */
+uint64_t render_real_cost(const struct render *render);
 
 /* ---- draw.c ---- */
 

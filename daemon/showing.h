@@ -4,7 +4,7 @@
 /*
  * What was to be shown at each vblank and what was: turns the presenter's flip
  * events into statistics, the timeline and feedback to the client. Belongs to
- * the render thread; `stats` is locked by the caller.
+ * the render thread, and so do the statistics.
  */
 #ifndef PURSUIT_SHOWING_H
 #define PURSUIT_SHOWING_H

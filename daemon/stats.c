@@ -4,6 +4,7 @@
 #include "daemon/stats.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 #define SMALLEST 0.001
@@ -64,6 +65,16 @@ void stats_add_report(struct stats *stats, const struct engine_report *report)
 void stats_add_row(struct stats *stats, const struct stats_row *row)
 {
 	stats->timeline[stats->timeline_count++ % STATS_TIMELINE] = *row;
+}
+
+void stats_publish(const struct stats *stats, struct stats *copy)
+{
+	uint64_t first = copy->timeline_count;
+	if (stats->timeline_count - first > STATS_TIMELINE)
+		first = stats->timeline_count - STATS_TIMELINE;
+	for (uint64_t i = first; i < stats->timeline_count; i++)
+		copy->timeline[i % STATS_TIMELINE] = stats->timeline[i % STATS_TIMELINE];
+	memcpy(copy, stats, offsetof(struct stats, timeline));
 }
 
 /* ---- JSON ---- */

@@ -3,8 +3,8 @@
 
 /*
  * Statistics of one output: counters, percentiles, what ran, and the timeline
- * of the last displayed frames. Knows no GL, no socket and no clock. Not
- * locked: the output copies the struct under its own lock.
+ * of the last displayed frames. Knows no GL, no socket and no clock. One
+ * thread; others read what it has published.
  */
 #ifndef PURSUIT_STATS_H
 #define PURSUIT_STATS_H
@@ -74,13 +74,16 @@ struct stats {
 	struct stats_spread engine_ms, submit_to_flip_ms, flip_error_ms;
 	struct stats_name passes[STATS_NAMES], left_out[STATS_NAMES];
 	uint32_t pass_count, left_out_count;
-	struct stats_row timeline[STATS_TIMELINE];
 	uint64_t timeline_count; /* ever; the newest are kept */
+	struct stats_row timeline[STATS_TIMELINE]; /* last: see stats_publish() */
 };
 
 /* The engine's report about one real frame. */
 void stats_add_report(struct stats *stats, const struct engine_report *report);
 void stats_add_row(struct stats *stats, const struct stats_row *row);
+
+/* Brings a copy up to date: the figures, and the rows that it lacks. Microseconds. */
+void stats_publish(const struct stats *stats, struct stats *copy);
 
 /* A JSON object with the figures by their names; the caller owns it. NULL: out of memory. */
 json_t *stats_json(const struct stats *stats);
