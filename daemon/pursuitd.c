@@ -25,7 +25,7 @@
 
 #define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_DAEMON)
 #define EXIT_USAGE 2
-#define DAEMON_NICE (-10)
+#define DAEMON_NICE (-3)
 
 struct pursuitd {
 	struct settings settings;
