@@ -23,9 +23,9 @@ static void create_vertices(struct scene *scene, const struct mesh *mesh)
 	gl->BindBuffer(GL_ARRAY_BUFFER, scene->vertex_buffer);
 	gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, scene->index_buffer);
 	gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(mesh->vertex_count * sizeof(*mesh->vertices)), mesh->vertices,
-	               GL_STATIC_DRAW);
+				   GL_STATIC_DRAW);
 	gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(mesh->index_count * sizeof(*mesh->indices)), mesh->indices,
-	               GL_STATIC_DRAW);
+				   GL_STATIC_DRAW);
 	gl->VertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, stride, offset(offsetof(struct mesh_vertex, position)));
 	gl->VertexAttribPointer(1, 4, GL_BYTE, GL_TRUE, stride, offset(offsetof(struct mesh_vertex, normal)));
 	gl->VertexAttribPointer(2, 2, GL_FLOAT, GL_FALSE, stride, offset(offsetof(struct mesh_vertex, uv)));
@@ -50,8 +50,8 @@ static void fill_layer(struct scene *scene, uint32_t layer, uint8_t *pixels)
 	material_fill(scene->kind->materials[layer], pixels);
 	double coverage = material_coverage(pixels, size);
 	for (GLint level = 0; level < MATERIAL_LEVELS; level++) {
-		scene->gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, level, 0, 0, (GLint)layer, (GLsizei)size, (GLsizei)size, 1, GL_RGBA,
-		                        GL_UNSIGNED_BYTE, pixels);
+		scene->gl.TexSubImage3D(GL_TEXTURE_2D_ARRAY, level, 0, 0, (GLint)layer, (GLsizei)size, (GLsizei)size, 1,
+								GL_RGBA, GL_UNSIGNED_BYTE, pixels);
 		if (size > 1)
 			material_halve(pixels, size, coverage);
 		size /= 2;
@@ -68,8 +68,8 @@ static bool create_materials(struct scene *scene)
 	gl->BindTexture(GL_TEXTURE_2D_ARRAY, scene->materials);
 	for (GLint level = 0; level < MATERIAL_LEVELS; level++) {
 		GLsizei size = MATERIAL_SIZE >> level;
-		gl->TexImage3D(GL_TEXTURE_2D_ARRAY, level, GL_RGBA8, size, size, (GLsizei)scene->kind->material_count, 0, GL_RGBA,
-		               GL_UNSIGNED_BYTE, NULL);
+		gl->TexImage3D(GL_TEXTURE_2D_ARRAY, level, GL_RGBA8, size, size, (GLsizei)scene->kind->material_count, 0,
+					   GL_RGBA, GL_UNSIGNED_BYTE, NULL);
 	}
 	gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, minifying_filter(gl));
 	gl->TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
@@ -89,7 +89,7 @@ static void create_overlay(struct scene *scene)
 	gl->GenTextures(1, &scene->glyphs);
 	gl->BindTexture(GL_TEXTURE_2D, scene->glyphs);
 	gl->TexImage2D(GL_TEXTURE_2D, 0, GL_R8, OVERLAY_ATLAS_WIDTH, OVERLAY_ATLAS_HEIGHT, 0, GL_RED, GL_UNSIGNED_BYTE,
-	               pixels);
+				   pixels);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 	gl->GenVertexArrays(1, &scene->overlay_array);

@@ -55,9 +55,9 @@ static void build_arch(struct mesh *mesh)
 	}
 	double pier = cell * 0.5 - arch;
 	mesh_quad(mesh, vec3(facade, spring, 0.003), vec3(facade, spring, -pier), vec3(facade, upper, -pier),
-	          vec3(facade, upper, 0.003), out);
+			  vec3(facade, upper, 0.003), out);
 	mesh_quad(mesh, vec3(facade, spring, -cell), vec3(facade, spring, -cell + pier), vec3(facade, upper, -cell + pier),
-	          vec3(facade, upper, -cell), out);
+			  vec3(facade, upper, -cell), out);
 }
 
 static void build_window(struct mesh *mesh, double z, double low, double high, double half)
@@ -66,17 +66,17 @@ static void build_window(struct mesh *mesh, double z, double low, double high, d
 	mesh->brush.open = 120;
 	mesh_tint(mesh, 0xffe9cc);
 	mesh_quad(mesh, vec3(facade, low, z - half), vec3(deep, low, z - half), vec3(deep, high, z - half),
-	          vec3(facade, high, z - half), vec3(0, 0, 1));
+			  vec3(facade, high, z - half), vec3(0, 0, 1));
 	mesh_quad(mesh, vec3(facade, low, z + half), vec3(deep, low, z + half), vec3(deep, high, z + half),
-	          vec3(facade, high, z + half), vec3(0, 0, -1));
+			  vec3(facade, high, z + half), vec3(0, 0, -1));
 	mesh_quad(mesh, vec3(facade, low, z - half), vec3(deep, low, z - half), vec3(deep, low, z + half),
-	          vec3(facade, low, z + half), vec3(0, 1, 0));
+			  vec3(facade, low, z + half), vec3(0, 1, 0));
 	mesh_quad(mesh, vec3(facade, high, z - half), vec3(deep, high, z - half), vec3(deep, high, z + half),
-	          vec3(facade, high, z + half), vec3(0, -1, 0));
+			  vec3(facade, high, z + half), vec3(0, -1, 0));
 	mesh_material(mesh, LAYER_PLASTER, 2.0);
 	mesh_tint(mesh, 0x5a6f86);
 	mesh_quad(mesh, vec3(deep, low, z - half), vec3(deep, low, z + half), vec3(deep, high, z + half),
-	          vec3(deep, high, z - half), vec3(-1, 0, 0));
+			  vec3(deep, high, z - half), vec3(-1, 0, 0));
 	mesh_material(mesh, LAYER_ASHLAR, 2.0);
 }
 
@@ -90,18 +90,23 @@ static void build_upper_wall(struct mesh *mesh)
 	for (int i = 0; i < 3; i++) {
 		double z0 = edges[i], z1 = edges[i + 1];
 		if (i != 1) {
-			mesh_quad(mesh, vec3(facade, low, z0), vec3(facade, low, z1), vec3(facade, eaves, z1), vec3(facade, eaves, z0), out);
+			mesh_quad(mesh, vec3(facade, low, z0), vec3(facade, low, z1), vec3(facade, eaves, z1),
+					  vec3(facade, eaves, z0), out);
 			continue;
 		}
-		mesh_quad(mesh, vec3(facade, low, z0), vec3(facade, low, z1), vec3(facade, sill, z1), vec3(facade, sill, z0), out);
-		mesh_quad(mesh, vec3(facade, head, z0), vec3(facade, head, z1), vec3(facade, eaves, z1), vec3(facade, eaves, z0), out);
+		mesh_quad(mesh, vec3(facade, low, z0), vec3(facade, low, z1), vec3(facade, sill, z1), vec3(facade, sill, z0),
+				  out);
+		mesh_quad(mesh, vec3(facade, head, z0), vec3(facade, head, z1), vec3(facade, eaves, z1),
+				  vec3(facade, eaves, z0), out);
 	}
 	build_window(mesh, z, sill, head, half);
 	mesh->brush.open = 255;
 	mesh_tint(mesh, 0xfff2dc);
 	mesh_box(mesh, vec3(facade - 0.16, 4.6, -cell), vec3(facade, low, 0.003), MESH_LEFT | MESH_TOP | MESH_BOTTOM);
-	mesh_box(mesh, vec3(facade - 0.12, sill - 0.16, z - half - 0.14), vec3(facade, sill, z + half + 0.14), MESH_ALL & ~MESH_RIGHT);
-	mesh_box(mesh, vec3(facade - 0.09, head, z - half - 0.14), vec3(facade, head + 0.2, z + half + 0.14), MESH_ALL & ~MESH_RIGHT);
+	mesh_box(mesh, vec3(facade - 0.12, sill - 0.16, z - half - 0.14), vec3(facade, sill, z + half + 0.14),
+			 MESH_ALL & ~MESH_RIGHT);
+	mesh_box(mesh, vec3(facade - 0.09, head, z - half - 0.14), vec3(facade, head + 0.2, z + half + 0.14),
+			 MESH_ALL & ~MESH_RIGHT);
 	mesh_box(mesh, vec3(facade - 0.34, eaves, -cell), vec3(facade, top, 0.003), MESH_LEFT | MESH_TOP | MESH_BOTTOM);
 }
 
@@ -111,15 +116,15 @@ static void build_gallery(struct mesh *mesh)
 	mesh->brush.open = 120;
 	mesh_tint(mesh, 0xf0b98a);
 	mesh_quad(mesh, vec3(back, 1.1, 0.003), vec3(back, 1.1, -cell), vec3(back, 4.7, -cell), vec3(back, 4.7, 0.003),
-	          vec3(-1, 0, 0));
+			  vec3(-1, 0, 0));
 	mesh->brush.open = 100;
 	mesh_tint(mesh, 0x9a4a38);
 	mesh_quad(mesh, vec3(back, 0.0, 0.003), vec3(back, 0.0, -cell), vec3(back, 1.1, -cell), vec3(back, 1.1, 0.003),
-	          vec3(-1, 0, 0));
+			  vec3(-1, 0, 0));
 	mesh->brush.open = 110;
 	mesh_tint(mesh, 0xd8c8b0);
 	mesh_quad(mesh, vec3(facade, 4.6, 0.003), vec3(facade, 4.6, -cell), vec3(back, 4.6, -cell), vec3(back, 4.6, 0.003),
-	          vec3(0, -1, 0));
+			  vec3(0, -1, 0));
 }
 
 /* A sagging cloth under the windows, lit from both sides. */
@@ -135,7 +140,7 @@ static void build_drape(struct mesh *mesh)
 		for (int i = 0; i <= ACROSS; i++) {
 			double u = (double)i / ACROSS, d = (double)j / DOWN, fold = sin(u * 25.13);
 			struct vec3 p = vec3(facade - 0.24 - 0.05 * fold, 5.5 - 2.0 * d - 0.25 * d * sin(u * SCENE_PI),
-			                     -cell * 0.5 + (u - 0.5) * 1.9);
+								 -cell * 0.5 + (u - 0.5) * 1.9);
 			mesh->brush.sway = (uint8_t)(255.0 * d * d);
 			mesh->brush.sway_phase = (uint8_t)(u * 90.0);
 			v[j][i] = mesh_add_vertex(mesh, p, vec3(-1, 0, 0.45 * cos(u * 25.13)), u, d);
@@ -162,10 +167,10 @@ static void build_floor(struct mesh *mesh)
 	for (int s = -1; s <= 1; s += 2) {
 		mesh->brush.open = 200;
 		mesh_quad(mesh, vec3(2.6 * s, 0, near), vec3(side * s, 0, near), vec3(side * s, 0, far), vec3(2.6 * s, 0, far),
-		          vec3(0, 1, 0));
+				  vec3(0, 1, 0));
 		mesh->brush.open = 110;
-		mesh_quad(mesh, vec3(side * s, 0, near), vec3(back * s, 0, near), vec3(back * s, 0, far), vec3(side * s, 0, far),
-		          vec3(0, 1, 0));
+		mesh_quad(mesh, vec3(side * s, 0, near), vec3(back * s, 0, near), vec3(back * s, 0, far),
+				  vec3(side * s, 0, far), vec3(0, 1, 0));
 	}
 }
 
@@ -220,9 +225,11 @@ static double walked(double time)
 
 static void plan(const struct scene *scene, double time, struct stage_plan *out)
 {
-	static const float colors[5][4] = {
-		{0.86f, 0.16f, 0.13f, 0}, {0.15f, 0.42f, 0.66f, 0}, {0.93f, 0.66f, 0.16f, 0}, {0.16f, 0.52f, 0.34f, 0},
-		{0.62f, 0.18f, 0.42f, 0}};
+	static const float colors[5][4] = {{0.86f, 0.16f, 0.13f, 0},
+									   {0.15f, 0.42f, 0.66f, 0},
+									   {0.93f, 0.66f, 0.16f, 0},
+									   {0.16f, 0.52f, 0.34f, 0},
+									   {0.62f, 0.18f, 0.42f, 0}};
 	out->cell = floor(walked(time) / cell);
 	out->origin = vec3(0, 0, -out->cell * cell);
 	for (int k = 0; k < CELLS_BEHIND + CELLS_AHEAD; k++) {
@@ -237,8 +244,8 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 			uint32_t dice = scene_hash2(number, side);
 			if (dice % 4 == 0)
 				continue;
-			struct stage_draw *draw = stage_draw(out, STAGE_COLONNADE, RANGE_DRAPE + side * 8, (uint32_t)k,
-			                                     number * 64 + 32 + side);
+			struct stage_draw *draw =
+				stage_draw(out, STAGE_COLONNADE, RANGE_DRAPE + side * 8, (uint32_t)k, number * 64 + 32 + side);
 			draw->tinted = true;
 			for (int c = 0; c < 4; c++)
 				draw->tint[c] = colors[(dice >> 8) % 5][c];
@@ -249,7 +256,7 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 static void pose(const struct scene *scene, double time, const struct stage_plan *out, struct stage_pose *pose)
 {
 	struct vec3 eye = vec3(1.5 * scene_wave(time, 23.0, 0.05), 1.75 + 0.04 * scene_wave(time, 1.05, 0.0),
-	                       -(walked(time) - out->cell * cell));
+						   -(walked(time) - out->cell * cell));
 	double yaw = 0.42 * scene_wave(time, 13.0, 0.12) + 0.16 * scene_wave(time, 7.3, 0.4);
 	double pitch = 0.10 + 0.09 * scene_wave(time, 17.0, 0.3);
 	struct vec3 ahead = vec3(sin(yaw) * cos(pitch), sin(pitch), -cos(yaw) * cos(pitch));
@@ -263,7 +270,8 @@ static void pose(const struct scene *scene, double time, const struct stage_plan
 const struct stage_kind scene_colonnade = {
 	.name = "colonnade",
 	.description = "a walk through a sunny arcade with fine stone",
-	.materials = {MATERIAL_ASHLAR, MATERIAL_PAVING, MATERIAL_MARBLE, MATERIAL_PLASTER, MATERIAL_FABRIC, MATERIAL_CLOUDS},
+	.materials = {MATERIAL_ASHLAR, MATERIAL_PAVING, MATERIAL_MARBLE, MATERIAL_PLASTER, MATERIAL_FABRIC,
+				  MATERIAL_CLOUDS},
 	.material_count = 6,
 	.build = build,
 	.plan = plan,

@@ -5,8 +5,20 @@
 #include "stage.h"
 
 enum { LAYER_FUR, LAYER_SAND, LAYER_FABRIC, LAYER_PLAIN, LAYER_TUFT, LAYER_CLOUDS };
-enum { RANGE_BODY, RANGE_NECK, RANGE_HEAD, RANGE_JAW, RANGE_TAIL, RANGE_THIGH, RANGE_SHIN, RANGE_FOOT, RANGE_GROUND,
-       RANGE_ROCKS, VARIANTS = 4, RANGE_TUFTS = RANGE_ROCKS + VARIANTS };
+enum {
+	RANGE_BODY,
+	RANGE_NECK,
+	RANGE_HEAD,
+	RANGE_JAW,
+	RANGE_TAIL,
+	RANGE_THIGH,
+	RANGE_SHIN,
+	RANGE_FOOT,
+	RANGE_GROUND,
+	RANGE_ROCKS,
+	VARIANTS = 4,
+	RANGE_TUFTS = RANGE_ROCKS + VARIANTS
+};
 enum { PART_BODY, PART_NECK, PART_UPPER_NECK, PART_HEAD, PART_JAW, PART_TAIL, PART_LEGS, PART_CELLS = PART_LEGS + 12 };
 enum { CELLS = 15, MIDDLE = 7 };
 
@@ -111,7 +123,7 @@ static void build_cell(struct scene *scene, struct mesh *mesh, uint32_t variant)
 		mesh->brush.open = 230;
 		mesh_tint(mesh, k & 1 ? 0xb08064 : 0x98765e);
 		mesh_ellipsoid(mesh, vec3(cell * (scene_random(seed, 4) - 0.5), r * 0.25, z),
-		               vec3(r * 1.3, r * (0.6 + 0.4 * scene_random(seed, 5)), r), 9, 6);
+					   vec3(r * 1.3, r * (0.6 + 0.4 * scene_random(seed, 5)), r), 9, 6);
 	}
 	/* Far dunes and a mesa. */
 	mesh_tint(mesh, 0xf0d0a0);
@@ -119,21 +131,23 @@ static void build_cell(struct scene *scene, struct mesh *mesh, uint32_t variant)
 		uint32_t seed = scene_hash(variant * 16 + k + 700);
 		double wide = 4.5 + 3.0 * scene_random(seed, 3);
 		mesh->brush.id = 30 + k;
-		mesh_ellipsoid(mesh, vec3(cell * (scene_random(seed, 1) - 0.5), -0.5, -14.0 - 12.0 * k - 6.0 * scene_random(seed, 2)),
-		               vec3(wide, 1.1 + 1.6 * scene_random(seed, 4) + 0.9 * k, wide * 0.6), 14, 8);
+		mesh_ellipsoid(mesh,
+					   vec3(cell * (scene_random(seed, 1) - 0.5), -0.5, -14.0 - 12.0 * k - 6.0 * scene_random(seed, 2)),
+					   vec3(wide, 1.1 + 1.6 * scene_random(seed, 4) + 0.9 * k, wide * 0.6), 14, 8);
 	}
 	stage_end(scene, mesh, RANGE_ROCKS + variant);
 	stage_begin(scene, mesh, RANGE_TUFTS + variant);
 	mesh_material(mesh, LAYER_TUFT, 1.0);
 	for (uint32_t k = 0; k < 6; k++) {
 		uint32_t seed = scene_hash(variant * 16 + k + 500);
-		double size = 0.35 + 0.4 * scene_random(seed, 1), z = k < 4 ? -1.2 - 6.0 * scene_random(seed, 2) : 1.0 + scene_random(seed, 2);
+		double size = 0.35 + 0.4 * scene_random(seed, 1),
+			   z = k < 4 ? -1.2 - 6.0 * scene_random(seed, 2) : 1.0 + scene_random(seed, 2);
 		mesh->brush.id = 40 + k;
 		mesh->brush.sway = 60;
 		mesh->brush.sway_phase = (uint8_t)seed;
 		mesh_tint(mesh, k & 1 ? 0xd0b870 : 0xb0b468);
-		mesh_card(mesh, vec3(cell * (scene_random(seed, 3) - 0.5), size * 0.46, z), vec3(size * 1.3, 0, 0.1), vec3(0, size, 0),
-		          vec3(0, 1, 0.4));
+		mesh_card(mesh, vec3(cell * (scene_random(seed, 3) - 0.5), size * 0.46, z), vec3(size * 1.3, 0, 0.1),
+				  vec3(0, size, 0), vec3(0, 1, 0.4));
 	}
 	mesh->brush.sway = 0;
 	stage_end(scene, mesh, RANGE_TUFTS + variant);
@@ -229,16 +243,20 @@ static void pose_head(struct stage_pose *pose, double time)
 {
 	struct mat4 body = pose->parts[PART_BODY];
 	double nod = 0.10 * scene_wave(time, period / 2.0, 0.1), look = 0.35 * scene_wave(time, 7.0, 0.0);
-	struct mat4 neck = mat4_multiply(body, mat4_multiply(mat4_translation(0.88, 0.05, 0), mat4_rotation_z(-1.05 + nod)));
-	struct mat4 upper = mat4_multiply(neck, mat4_multiply(mat4_translation(0, 0.58, 0), mat4_rotation_z(0.82 - nod * 0.7)));
+	struct mat4 neck =
+		mat4_multiply(body, mat4_multiply(mat4_translation(0.88, 0.05, 0), mat4_rotation_z(-1.05 + nod)));
+	struct mat4 upper =
+		mat4_multiply(neck, mat4_multiply(mat4_translation(0, 0.58, 0), mat4_rotation_z(0.82 - nod * 0.7)));
 	upper = mat4_multiply(upper, mat4_multiply(mat4_rotation_y(look * 0.5), mat4_scaling(0.72, 1.0, 0.72)));
 	pose->parts[PART_NECK] = neck;
 	pose->parts[PART_UPPER_NECK] = upper;
-	struct mat4 head = mat4_multiply(upper, mat4_multiply(mat4_scaling(1.0 / 0.72, 1.0, 1.0 / 0.72), mat4_translation(0.02, 0.66, 0)));
+	struct mat4 head =
+		mat4_multiply(upper, mat4_multiply(mat4_scaling(1.0 / 0.72, 1.0, 1.0 / 0.72), mat4_translation(0.02, 0.66, 0)));
 	head = mat4_multiply(head, mat4_multiply(mat4_rotation_y(look * 0.5), mat4_rotation_z(0.12 - nod)));
 	pose->parts[PART_HEAD] = head;
 	double chew = 0.10 + 0.10 * scene_wave(time, 0.9, 0.0);
-	pose->parts[PART_JAW] = mat4_multiply(head, mat4_multiply(mat4_translation(0.10, -0.11, 0), mat4_rotation_z(-chew)));
+	pose->parts[PART_JAW] =
+		mat4_multiply(head, mat4_multiply(mat4_translation(0.10, -0.11, 0), mat4_rotation_z(-chew)));
 }
 
 static void pose(const struct scene *scene, double time, const struct stage_plan *out, struct stage_pose *pose)
@@ -248,8 +266,10 @@ static void pose(const struct scene *scene, double time, const struct stage_plan
 	double bob = 0.035 * scene_wave(time, period / 2.0, 0.0), pitch = 0.03 * scene_wave(time, period / 2.0, 0.25);
 	pose->parts[PART_BODY] = mat4_multiply(mat4_translation(x, 2.02 + bob, 0), mat4_rotation_z(pitch));
 	pose_head(pose, time);
-	pose->parts[PART_TAIL] = mat4_multiply(pose->parts[PART_BODY], mat4_multiply(mat4_translation(-1.02, 0.12, 0),
-	                                       mat4_multiply(mat4_rotation_x(0.5 * scene_wave(time, 1.7, 0.0)), mat4_rotation_z(-0.25))));
+	pose->parts[PART_TAIL] = mat4_multiply(
+		pose->parts[PART_BODY],
+		mat4_multiply(mat4_translation(-1.02, 0.12, 0),
+					  mat4_multiply(mat4_rotation_x(0.5 * scene_wave(time, 1.7, 0.0)), mat4_rotation_z(-0.25))));
 	for (int leg = 0; leg < 4; leg++) {
 		double phase = fmod(gait + phases[leg], 1.0), side = leg & 1 ? 0.24 : -0.24;
 		struct vec3 hip = vec3(leg < 2 ? 0.64 : -0.70, 1.72 + bob, side);
@@ -260,7 +280,8 @@ static void pose(const struct scene *scene, double time, const struct stage_plan
 	for (int k = 0; k < CELLS; k++)
 		pose->parts[PART_CELLS + k] = mat4_translation(cell * (k - MIDDLE), 0, 0);
 	double angle = 0.45 * scene_wave(time, 21.0, 0.08), distance = 5.6 + 0.7 * scene_wave(time, 17.0, 0.0);
-	struct vec3 eye = vec3(x + 0.3 + distance * sin(angle), 1.9 + 0.4 * scene_wave(time, 13.0, 0.3), distance * cos(angle));
+	struct vec3 eye =
+		vec3(x + 0.3 + distance * sin(angle), 1.9 + 0.4 * scene_wave(time, 13.0, 0.3), distance * cos(angle));
 	pose->view = mat4_look_at(eye, vec3(x + 0.35, 1.62, 0));
 	pose->sway[0] = 2.0 * SCENE_PI * scene_phase(time, 2.1);
 	pose->sway[1] = 2.0 * SCENE_PI * scene_phase(time, 1.3);

@@ -23,7 +23,8 @@ static void build_blade(struct mesh *mesh)
 				double width = 0.16 + 0.40 * sin(SCENE_PI * pow(r, 0.8) * 0.86 + 0.1);
 				double x = s * width + 0.10 * r, y = 0.07 + 0.72 * (r - 0.09 * (4.0 * s * s) * r * r);
 				struct vec3 p = vec3(x, y, -x * 0.42 + 0.04 * (1 - 4 * s * s) + side * 0.006);
-				v[j][i] = mesh_add_vertex(mesh, p, vec3(0.38 * side + 0.3 * s * side, 0.05, side), s * width * 2.0, y * 2.0);
+				v[j][i] =
+					mesh_add_vertex(mesh, p, vec3(0.38 * side + 0.3 * s * side, 0.05, side), s * width * 2.0, y * 2.0);
 			}
 		}
 		for (int j = 0; j < ALONG; j++) {
@@ -73,7 +74,8 @@ static void build_books(struct mesh *mesh, double y, double from, double to, uin
 		double width = 0.05 + 0.06 * scene_random(seed, i), height = 0.30 + 0.16 * scene_random(seed + 1, i);
 		mesh->brush.id = seed + i;
 		mesh_tint(mesh, tints[scene_hash2(seed, i) % 8]);
-		mesh_box(mesh, vec3(x, y, -1.32), vec3(x + width - 0.006, y + height, -1.04), MESH_FRONT | MESH_LEFT | MESH_RIGHT | MESH_TOP);
+		mesh_box(mesh, vec3(x, y, -1.32), vec3(x + width - 0.006, y + height, -1.04),
+				 MESH_FRONT | MESH_LEFT | MESH_RIGHT | MESH_TOP);
 		x += width;
 	}
 }
@@ -110,7 +112,7 @@ static void build_picture(struct mesh *mesh)
 		mesh_tint(mesh, bands[i]);
 		mesh->brush.id = 51 + i;
 		mesh_quad(mesh, vec3(x + 0.08, low, z + 0.035), vec3(x + width - 0.08, low + 0.0, z + 0.035),
-		          vec3(x + width - 0.08, high, z + 0.035), vec3(x + 0.08, high, z + 0.035), vec3(0, 0, 1));
+				  vec3(x + width - 0.08, high, z + 0.035), vec3(x + 0.08, high, z + 0.035), vec3(0, 0, 1));
 	}
 }
 
@@ -179,12 +181,14 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 static void pose(const struct scene *scene, double time, const struct stage_plan *out, struct stage_pose *pose)
 {
 	double turn = 2.0 * SCENE_PI * scene_phase(time, 0.8);
-	struct mat4 head = mat4_multiply(mat4_translation(0, axis_height, 0.02), mat4_rotation_y(0.45 * scene_wave(time, 9.0, 0.0)));
+	struct mat4 head =
+		mat4_multiply(mat4_translation(0, axis_height, 0.02), mat4_rotation_y(0.45 * scene_wave(time, 9.0, 0.0)));
 	pose->view = mat4_look_at(vec3(0.55, 1.85, 3.5), vec3(0.05, 1.5, 0));
 	pose->parts[PART_HEAD] = mat4_multiply(head, mat4_translation(0, 0, 0.05));
 	pose->parts[PART_HUB] = mat4_multiply(head, mat4_multiply(mat4_translation(0, 0, 0.12), mat4_rotation_z(-turn)));
 	for (int k = 0; k < BLADES; k++)
-		pose->parts[PART_BLADE + k] = mat4_multiply(pose->parts[PART_HUB], mat4_rotation_z(2.0 * SCENE_PI * k / BLADES));
+		pose->parts[PART_BLADE + k] =
+			mat4_multiply(pose->parts[PART_HUB], mat4_rotation_z(2.0 * SCENE_PI * k / BLADES));
 }
 
 const struct stage_kind scene_fan = {

@@ -18,14 +18,16 @@ static void build_tower(struct mesh *mesh, double x, double z, uint32_t seed)
 	double height = 12.0 + 26.0 * scene_random(seed, 3) * (0.5 + 0.5 * scene_random(seed, 4));
 	mesh_material(mesh, scene_random(seed, 5) > 0.25 ? LAYER_FACADE : LAYER_BRICK, 10.0);
 	mesh_tint(mesh, tints[scene_hash(seed) % 6]);
-	mesh_box(mesh, vec3(x - width, 0, z - depth), vec3(x + width, height, z + depth), MESH_LEFT | MESH_RIGHT | MESH_FRONT | MESH_TOP);
+	mesh_box(mesh, vec3(x - width, 0, z - depth), vec3(x + width, height, z + depth),
+			 MESH_LEFT | MESH_RIGHT | MESH_FRONT | MESH_TOP);
 	mesh_material(mesh, LAYER_PAVING, 4.0);
 	mesh_tint(mesh, 0xb0a8a0);
-	mesh_box(mesh, vec3(x - width - 0.3, height - 1.0, z - depth - 0.3), vec3(x + width + 0.3, height + 0.4, z + depth + 0.3),
-	         MESH_LEFT | MESH_RIGHT | MESH_FRONT | MESH_TOP | MESH_BOTTOM);
+	mesh_box(mesh, vec3(x - width - 0.3, height - 1.0, z - depth - 0.3),
+			 vec3(x + width + 0.3, height + 0.4, z + depth + 0.3),
+			 MESH_LEFT | MESH_RIGHT | MESH_FRONT | MESH_TOP | MESH_BOTTOM);
 	if (scene_random(seed, 6) > 0.5)
-		mesh_box(mesh, vec3(x - width * 0.5, height, z - depth * 0.5), vec3(x + width * 0.5, height + 4.0, z + depth * 0.5),
-		         MESH_LEFT | MESH_RIGHT | MESH_FRONT | MESH_TOP);
+		mesh_box(mesh, vec3(x - width * 0.5, height, z - depth * 0.5),
+				 vec3(x + width * 0.5, height + 4.0, z + depth * 0.5), MESH_LEFT | MESH_RIGHT | MESH_FRONT | MESH_TOP);
 }
 
 static void build_sign(struct mesh *mesh, double side, double z, uint32_t seed)
@@ -79,7 +81,8 @@ static void build(struct scene *scene, struct mesh *mesh)
 	mesh_material(mesh, LAYER_PAVING, 4.0);
 	mesh_tint(mesh, 0xe0d4c8);
 	for (int s = -1; s <= 1; s += 2)
-		mesh_quad(mesh, vec3(6 * s, 0, 24), vec3(60 * s, 0, 24), vec3(60 * s, 0, -280), vec3(6 * s, 0, -280), vec3(0, 1, 0));
+		mesh_quad(mesh, vec3(6 * s, 0, 24), vec3(60 * s, 0, 24), vec3(60 * s, 0, -280), vec3(6 * s, 0, -280),
+				  vec3(0, 1, 0));
 	mesh->brush.id = 2;
 	mesh_tint(mesh, 0xffe890);
 	for (int k = -2; k < 20; k++)
@@ -123,7 +126,8 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 	}
 	for (int k = 0; k < CELLS; k++) {
 		uint32_t number = (uint32_t)(int64_t)fmod(out->cell + k, 65536.0) + 65536u;
-		stage_draw(out, STAGE_SOLID, RANGE_BLOCK + scene_hash(number) % VARIANTS, (uint32_t)(PART_CELLS + k), number * 64);
+		stage_draw(out, STAGE_SOLID, RANGE_BLOCK + scene_hash(number) % VARIANTS, (uint32_t)(PART_CELLS + k),
+				   number * 64);
 	}
 	stage_draw(out, STAGE_SOLID, RANGE_STREET, STAGE_PARTS - 1, 0);
 }
@@ -138,10 +142,13 @@ static void pose(const struct scene *scene, double time, const struct stage_plan
 	for (int k = 0; k < CELLS; k++)
 		pose->parts[PART_CELLS + k] = mat4_translation(0, 0, -cell * (k - 0.3));
 	for (int k = 0; k < 3; k++) {
-		double ahead = 9.0 + 7.0 * k + 2.5 * scene_wave(time, 5.0 + k, 0.3 * k), sway = scene_wave(time, 4.0 + 1.3 * k, 0.2 * k);
-		struct mat4 at = mat4_translation(3.2 * sway + (k - 1) * 0.9, 5.2 + 1.1 * scene_wave(time, 3.1 + k, 0.5 * k), z - ahead);
-		pose->parts[PART_CRAFT + k] = mat4_multiply(at, mat4_multiply(mat4_rotation_z(-0.5 * scene_wave(time, 4.0 + 1.3 * k, 0.2 * k + 0.25)),
-		                                            mat4_rotation_y(-0.25 * sway)));
+		double ahead = 9.0 + 7.0 * k + 2.5 * scene_wave(time, 5.0 + k, 0.3 * k),
+			   sway = scene_wave(time, 4.0 + 1.3 * k, 0.2 * k);
+		struct mat4 at =
+			mat4_translation(3.2 * sway + (k - 1) * 0.9, 5.2 + 1.1 * scene_wave(time, 3.1 + k, 0.5 * k), z - ahead);
+		pose->parts[PART_CRAFT + k] =
+			mat4_multiply(at, mat4_multiply(mat4_rotation_z(-0.5 * scene_wave(time, 4.0 + 1.3 * k, 0.2 * k + 0.25)),
+											mat4_rotation_y(-0.25 * sway)));
 	}
 }
 

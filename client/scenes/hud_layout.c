@@ -42,8 +42,10 @@ static void radar(struct overlay *ui, double time)
 	double sweep = 2.0 * SCENE_PI * scene_phase(time, 2.0), reach = size * 0.46;
 	overlay_line(ui, cx, cy, cx + reach * cos(sweep), cy + reach * sin(sweep), 2 * u, 0x80ffc0, 0.9);
 	for (uint32_t i = 0; i < 9; i++) {
-		double a = 6.283 * (scene_random(i, 1) + scene_phase(time, 20.0 + i)), r = reach * (0.2 + 0.75 * scene_random(i, 2));
-		overlay_rectangle(ui, cx + r * cos(a) - u, cy + r * sin(a) - u, 3 * u, 3 * u, i % 3 ? 0xf0e060 : 0xf05848, 0.95);
+		double a = 6.283 * (scene_random(i, 1) + scene_phase(time, 20.0 + i)),
+			   r = reach * (0.2 + 0.75 * scene_random(i, 2));
+		overlay_rectangle(ui, cx + r * cos(a) - u, cy + r * sin(a) - u, 3 * u, 3 * u, i % 3 ? 0xf0e060 : 0xf05848,
+						  0.95);
 	}
 }
 
@@ -67,15 +69,19 @@ static void compass(struct overlay *ui, double time)
 static void chat(struct overlay *ui, double time)
 {
 	static const char *const lines[10] = {
-		"KESTREL: TWO BEHIND YOU", "TOWER: LANE 4 IS CLEAR",    "MARLA: THANKS FOR THE RIDE", "NEWS: RAIN AFTER NINE",
-		"OTIS: RACE YOU TO THE PIER", "TOWER: KEEP BELOW 60",   "KESTREL: NICE TURN!",        "SYSTEM: FUEL AT 55%",
+		"KESTREL: TWO BEHIND YOU",    "TOWER: LANE 4 IS CLEAR",  "MARLA: THANKS FOR THE RIDE", "NEWS: RAIN AFTER NINE",
+		"OTIS: RACE YOU TO THE PIER", "TOWER: KEEP BELOW 60",    "KESTREL: NICE TURN!",        "SYSTEM: FUEL AT 55%",
 		"MARLA: SEE THE SUNSET?",     "OTIS: LEFT AT THE BRICKS"};
 	double u = ui->unit, width = 172 * u, height = 66 * u, x = 4 * u, y = ui->height - height - 4 * u;
 	uint32_t first = (uint32_t)fmod(floor(fabs(time) / 1.6), 1e6);
 	panel(ui, x, y, width, height, 0x8090c0);
 	for (uint32_t i = 0; i < 6; i++) {
 		uint32_t line = (first + i) % 10;
-		overlay_text(ui, x + 5 * u, y + (5 + 10 * i) * u, 1.0, i == 5 ? 0xffffff : line % 3 ? 0xb8c8e0 : 0xf0d890, lines[line]);
+		overlay_text(ui, x + 5 * u, y + (5 + 10 * i) * u, 1.0,
+					 i == 5     ? 0xffffff
+					 : line % 3 ? 0xb8c8e0
+								: 0xf0d890,
+					 lines[line]);
 	}
 }
 
@@ -97,27 +103,32 @@ static void hotbar(struct overlay *ui, double time)
 
 static void figures(struct overlay *ui, double time)
 {
-	double u = ui->unit, width = 84 * u, height = 64 * u, x = ui->width - width - 4 * u, y = ui->height - height - 28 * u;
+	double u = ui->unit, width = 84 * u, height = 64 * u, x = ui->width - width - 4 * u,
+		   y = ui->height - height - 28 * u;
 	char text[32];
 	panel(ui, x, y, width, height, 0xf0a050);
 	const struct {
 		const char *name;
 		double value;
-	} rows[3] = {{"SPEED", 140.0 + 9.0 * scene_wave(time, 3.0, 0.0)}, {"ALT", 65.0 + 16.0 * scene_wave(time, 7.0, 0.1)},
-	             {"DIST", fmod(fabs(time) * 14.0, 100000.0)}};
+	} rows[3] = {{"SPEED", 140.0 + 9.0 * scene_wave(time, 3.0, 0.0)},
+				 {"ALT", 65.0 + 16.0 * scene_wave(time, 7.0, 0.1)},
+				 {"DIST", fmod(fabs(time) * 14.0, 100000.0)}};
 	for (int i = 0; i < 3; i++) {
 		snprintf(text, sizeof(text), "%-6s%6.1f", rows[i].name, rows[i].value);
 		overlay_text(ui, x + 5 * u, y + (5 + 10 * i) * u, 1.0, 0xf8e8d0, text);
 	}
 	for (int i = 0; i < 24; i++) {
-		double h = (8.0 + 6.0 * scene_wave(time + i * 0.13, 1.7, 0.0) + 4.0 * scene_wave(time + i * 0.13, 0.73, 0.2)) * u;
-		overlay_rectangle(ui, x + (5 + 3 * i) * u, y + 59 * u - fmax(h, u), 2 * u, fmax(h, u), h > 13 * u ? 0xf06050 : 0x70d0a0, 0.9);
+		double h =
+			(8.0 + 6.0 * scene_wave(time + i * 0.13, 1.7, 0.0) + 4.0 * scene_wave(time + i * 0.13, 0.73, 0.2)) * u;
+		overlay_rectangle(ui, x + (5 + 3 * i) * u, y + 59 * u - fmax(h, u), 2 * u, fmax(h, u),
+						  h > 13 * u ? 0xf06050 : 0x70d0a0, 0.9);
 	}
 }
 
 static void reticle(struct overlay *ui, double time)
 {
-	double u = ui->unit, cx = floor(ui->width / 2), cy = floor(ui->height / 2), gap = (7 + 2 * scene_wave(time, 1.5, 0)) * u;
+	double u = ui->unit, cx = floor(ui->width / 2), cy = floor(ui->height / 2),
+		   gap = (7 + 2 * scene_wave(time, 1.5, 0)) * u;
 	for (int s = -1; s <= 1; s += 2) {
 		overlay_rectangle(ui, s < 0 ? cx - gap - 9 * u : cx + gap, cy, 10 * u, u, 0x80ffd0, 0.9);
 		overlay_rectangle(ui, cx, s < 0 ? cy - gap - 9 * u : cy + gap, u, 10 * u, 0x80ffd0, 0.9);

@@ -132,10 +132,12 @@ static struct texel brick(float u, float v)
 	float grain = fbm(u, v, 64, 64, 3, 12), stain = fbm(u, v, 4, 4, 4, 13);
 	float joint = smooth(0.06f, 0.16f, block.edge);
 	float tone = block_random(block, 1);
-	float s = (0.7f + 0.4f * grain) * (0.75f + 0.35f * tone) * (0.8f + 0.3f * stain) + 0.12f * smooth(0.6f, 0.9f, block.y);
+	float s =
+		(0.7f + 0.4f * grain) * (0.75f + 0.35f * tone) * (0.8f + 0.3f * stain) + 0.12f * smooth(0.6f, 0.9f, block.y);
 	struct texel clay = shade(0.80f, 0.47f + 0.1f * block_random(block, 2), 0.38f, s);
 	struct texel mortar = shade(0.76f, 0.73f, 0.67f, 0.7f + 0.3f * grain);
-	return (struct texel){mixf(mortar.r, clay.r, joint), mixf(mortar.g, clay.g, joint), mixf(mortar.b, clay.b, joint), 1};
+	return (struct texel){mixf(mortar.r, clay.r, joint), mixf(mortar.g, clay.g, joint), mixf(mortar.b, clay.b, joint),
+						  1};
 }
 
 static struct texel paving(float u, float v)
@@ -211,7 +213,8 @@ static struct texel fabric(float u, float v)
 	float band = smooth(0.47f, 0.49f, fabsf(v - 0.5f)) + smooth(0.012f, 0.006f, fabsf(fabsf(v - 0.5f) - 0.42f));
 	float diamond = fabsf(fmodf(u * 8.0f, 1.0f) - 0.5f) + fabsf(fmodf(v * 8.0f, 1.0f) - 0.5f);
 	float pattern = smooth(0.30f, 0.34f, diamond) - smooth(0.40f, 0.44f, diamond);
-	float s = (0.70f + 0.14f * weave + 0.1f * thread + 0.16f * (fold - 0.5f)) * (1.0f + 0.4f * clamp01(band + pattern * 0.7f));
+	float s = (0.70f + 0.14f * weave + 0.1f * thread + 0.16f * (fold - 0.5f)) *
+			  (1.0f + 0.4f * clamp01(band + pattern * 0.7f));
 	return shade(0.86f, 0.86f, 0.86f, s);
 }
 
@@ -262,7 +265,7 @@ static struct texel facade(float u, float v)
 	float glass = (0.22f + 0.24f * block.y + 0.2f * block_random(block, 4)) * (0.45f + 0.55f * bar);
 	struct texel pane = lit > 0.62f ? shade(1.0f, 0.86f, 0.55f, 0.6f + 0.4f * bar) : shade(0.72f, 0.86f, 1.0f, glass);
 	return (struct texel){mixf(wall, pane.r, window), mixf(wall * 0.96f, pane.g, window),
-	                      mixf(wall * 0.9f, pane.b, window), 1.0f};
+						  mixf(wall * 0.9f, pane.b, window), 1.0f};
 }
 
 static struct texel asphalt(float u, float v)
@@ -286,10 +289,10 @@ static struct texel grid(float u, float v)
 typedef struct texel (*painter)(float u, float v);
 
 static const painter painters[MATERIAL_COUNT] = {
-	[MATERIAL_PLAIN] = plain,	 [MATERIAL_ASHLAR] = ashlar, [MATERIAL_BRICK] = brick,	 [MATERIAL_PAVING] = paving,
-	[MATERIAL_MARBLE] = marble,	 [MATERIAL_PLASTER] = plaster, [MATERIAL_WOOD] = wood,	 [MATERIAL_BARK] = bark,
-	[MATERIAL_GRASS] = grass,	 [MATERIAL_FABRIC] = fabric, [MATERIAL_PAINT] = paint,	 [MATERIAL_SAND] = sand,
-	[MATERIAL_FUR] = fur,		 [MATERIAL_CLOUDS] = clouds, [MATERIAL_FACADE] = facade, [MATERIAL_ASPHALT] = asphalt,
+	[MATERIAL_PLAIN] = plain,   [MATERIAL_ASHLAR] = ashlar,   [MATERIAL_BRICK] = brick,   [MATERIAL_PAVING] = paving,
+	[MATERIAL_MARBLE] = marble, [MATERIAL_PLASTER] = plaster, [MATERIAL_WOOD] = wood,     [MATERIAL_BARK] = bark,
+	[MATERIAL_GRASS] = grass,   [MATERIAL_FABRIC] = fabric,   [MATERIAL_PAINT] = paint,   [MATERIAL_SAND] = sand,
+	[MATERIAL_FUR] = fur,       [MATERIAL_CLOUDS] = clouds,   [MATERIAL_FACADE] = facade, [MATERIAL_ASPHALT] = asphalt,
 	[MATERIAL_GRID] = grid,
 };
 
@@ -312,7 +315,8 @@ static void paint_leaf(uint8_t *pixels, float cx, float cy, float length, float 
 			float width = 0.42f * (1.0f - along * along) * (1.0f - 0.25f * along);
 			if (fabsf(along) >= 1.0f || fabsf(across) >= width)
 				continue;
-			uint32_t px = (uint32_t)((int)cx + x) & (MATERIAL_SIZE - 1), py = (uint32_t)((int)cy + y) & (MATERIAL_SIZE - 1);
+			uint32_t px = (uint32_t)((int)cx + x) & (MATERIAL_SIZE - 1),
+					 py = (uint32_t)((int)cy + y) & (MATERIAL_SIZE - 1);
 			float rib = smooth(0.05f, 0.02f, fabsf(across));
 			float vein = 0.06f * sinf((along * 9.0f - fabsf(across) * 9.0f) * 3.0f);
 			float light = tone * (0.86f + 0.3f * across / width * 0.5f + vein) + 0.12f * rib;
@@ -329,8 +333,9 @@ static void leaves(uint8_t *pixels)
 		double x = scene_random(i, 161u), y = scene_random(i, 162u);
 		if (hypot(x - 0.5, y - 0.5) > 0.47)
 			continue;
-		paint_leaf(pixels, (float)(48.0 + x * 416.0), (float)(48.0 + y * 416.0), (float)(30.0 + 16.0 * scene_random(i, 163u)),
-		           (float)(scene_random(i, 164u) * 6.28318), (float)(0.62 + 0.38 * (double)i / 54.0));
+		paint_leaf(pixels, (float)(48.0 + x * 416.0), (float)(48.0 + y * 416.0),
+				   (float)(30.0 + 16.0 * scene_random(i, 163u)), (float)(scene_random(i, 164u) * 6.28318),
+				   (float)(0.62 + 0.38 * (double)i / 54.0));
 	}
 }
 
@@ -339,8 +344,10 @@ static void tuft(uint8_t *pixels)
 	for (uint32_t i = 0; i < MATERIAL_SIZE * MATERIAL_SIZE; i++)
 		memcpy(pixels + i * 4, (const uint8_t[4]){120, 140, 66, 0}, 4);
 	for (uint32_t i = 0; i < 46; i++) {
-		float root = (float)(90.0 + 330.0 * scene_random(i, 171u)), lean = (float)((scene_random(i, 172u) - 0.5) * 260.0);
-		float height = (float)(220.0 + 270.0 * scene_random(i, 173u)), tone = (float)(0.55 + 0.45 * scene_random(i, 174u));
+		float root = (float)(90.0 + 330.0 * scene_random(i, 171u)),
+			  lean = (float)((scene_random(i, 172u) - 0.5) * 260.0);
+		float height = (float)(220.0 + 270.0 * scene_random(i, 173u)),
+			  tone = (float)(0.55 + 0.45 * scene_random(i, 174u));
 		for (int y = 0; y < (int)height; y++) {
 			float t = (float)y / height, width = 13.0f * (1.0f - t * t) + 1.0f, x = root + lean * t * t;
 			for (int k = (int)-width; k <= (int)width; k++) {

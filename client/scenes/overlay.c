@@ -11,22 +11,28 @@ enum { GLYPH_WIDTH = 5, GLYPH_HEIGHT = 7, CELL = 8, FIRST = ' ', LAST = '_', COL
 
 /* Rows from top to bottom, five bits each, the left pixel highest. */
 static const uint8_t font[LAST - FIRST + 1][GLYPH_HEIGHT] = {
-	{0, 0, 0, 0, 0, 0, 0},        {4, 4, 4, 4, 4, 0, 4},        {10, 10, 0, 0, 0, 0, 0},      {10, 31, 10, 10, 31, 10, 0},
-	{4, 15, 20, 14, 5, 30, 4},    {24, 25, 2, 4, 8, 19, 3},     {12, 18, 20, 8, 21, 18, 13},  {4, 4, 0, 0, 0, 0, 0},
-	{2, 4, 8, 8, 8, 4, 2},        {8, 4, 2, 2, 2, 4, 8},        {0, 21, 14, 31, 14, 21, 0},   {0, 4, 4, 31, 4, 4, 0},
-	{0, 0, 0, 0, 4, 4, 8},        {0, 0, 0, 31, 0, 0, 0},       {0, 0, 0, 0, 0, 12, 12},      {0, 1, 2, 4, 8, 16, 0},
-	{14, 17, 19, 21, 25, 17, 14}, {4, 12, 4, 4, 4, 4, 14},      {14, 17, 1, 2, 4, 8, 31},     {31, 2, 4, 2, 1, 17, 14},
-	{2, 6, 10, 18, 31, 2, 2},     {31, 16, 30, 1, 1, 17, 14},   {6, 8, 16, 30, 17, 17, 14},   {31, 1, 2, 4, 8, 8, 8},
-	{14, 17, 17, 14, 17, 17, 14}, {14, 17, 17, 15, 1, 2, 12},   {0, 12, 12, 0, 12, 12, 0},    {0, 12, 12, 0, 12, 4, 8},
-	{2, 4, 8, 16, 8, 4, 2},       {0, 0, 31, 0, 31, 0, 0},      {8, 4, 2, 1, 2, 4, 8},        {14, 17, 1, 2, 4, 0, 4},
-	{14, 17, 23, 21, 23, 16, 14}, {14, 17, 17, 31, 17, 17, 17}, {30, 17, 17, 30, 17, 17, 30}, {14, 17, 16, 16, 16, 17, 14},
-	{28, 18, 17, 17, 17, 18, 28}, {31, 16, 16, 30, 16, 16, 31}, {31, 16, 16, 30, 16, 16, 16}, {14, 17, 16, 23, 17, 17, 15},
-	{17, 17, 17, 31, 17, 17, 17}, {14, 4, 4, 4, 4, 4, 14},      {7, 2, 2, 2, 2, 18, 12},      {17, 18, 20, 24, 20, 18, 17},
-	{16, 16, 16, 16, 16, 16, 31}, {17, 27, 21, 21, 17, 17, 17}, {17, 17, 25, 21, 19, 17, 17}, {14, 17, 17, 17, 17, 17, 14},
-	{30, 17, 17, 30, 16, 16, 16}, {14, 17, 17, 17, 21, 18, 13}, {30, 17, 17, 30, 20, 18, 17}, {15, 16, 16, 14, 1, 1, 30},
-	{31, 4, 4, 4, 4, 4, 4},       {17, 17, 17, 17, 17, 17, 14}, {17, 17, 17, 17, 17, 10, 4},  {17, 17, 17, 21, 21, 21, 10},
-	{17, 17, 10, 4, 10, 17, 17},  {17, 17, 17, 10, 4, 4, 4},    {31, 1, 2, 4, 8, 16, 31},     {14, 8, 8, 8, 8, 8, 14},
-	{0, 16, 8, 4, 2, 1, 0},       {14, 2, 2, 2, 2, 2, 14},      {4, 10, 17, 0, 0, 0, 0},      {0, 0, 0, 0, 0, 0, 31},
+	{0, 0, 0, 0, 0, 0, 0},        {4, 4, 4, 4, 4, 0, 4},        {10, 10, 0, 0, 0, 0, 0},
+	{10, 31, 10, 10, 31, 10, 0},  {4, 15, 20, 14, 5, 30, 4},    {24, 25, 2, 4, 8, 19, 3},
+	{12, 18, 20, 8, 21, 18, 13},  {4, 4, 0, 0, 0, 0, 0},        {2, 4, 8, 8, 8, 4, 2},
+	{8, 4, 2, 2, 2, 4, 8},        {0, 21, 14, 31, 14, 21, 0},   {0, 4, 4, 31, 4, 4, 0},
+	{0, 0, 0, 0, 4, 4, 8},        {0, 0, 0, 31, 0, 0, 0},       {0, 0, 0, 0, 0, 12, 12},
+	{0, 1, 2, 4, 8, 16, 0},       {14, 17, 19, 21, 25, 17, 14}, {4, 12, 4, 4, 4, 4, 14},
+	{14, 17, 1, 2, 4, 8, 31},     {31, 2, 4, 2, 1, 17, 14},     {2, 6, 10, 18, 31, 2, 2},
+	{31, 16, 30, 1, 1, 17, 14},   {6, 8, 16, 30, 17, 17, 14},   {31, 1, 2, 4, 8, 8, 8},
+	{14, 17, 17, 14, 17, 17, 14}, {14, 17, 17, 15, 1, 2, 12},   {0, 12, 12, 0, 12, 12, 0},
+	{0, 12, 12, 0, 12, 4, 8},     {2, 4, 8, 16, 8, 4, 2},       {0, 0, 31, 0, 31, 0, 0},
+	{8, 4, 2, 1, 2, 4, 8},        {14, 17, 1, 2, 4, 0, 4},      {14, 17, 23, 21, 23, 16, 14},
+	{14, 17, 17, 31, 17, 17, 17}, {30, 17, 17, 30, 17, 17, 30}, {14, 17, 16, 16, 16, 17, 14},
+	{28, 18, 17, 17, 17, 18, 28}, {31, 16, 16, 30, 16, 16, 31}, {31, 16, 16, 30, 16, 16, 16},
+	{14, 17, 16, 23, 17, 17, 15}, {17, 17, 17, 31, 17, 17, 17}, {14, 4, 4, 4, 4, 4, 14},
+	{7, 2, 2, 2, 2, 18, 12},      {17, 18, 20, 24, 20, 18, 17}, {16, 16, 16, 16, 16, 16, 31},
+	{17, 27, 21, 21, 17, 17, 17}, {17, 17, 25, 21, 19, 17, 17}, {14, 17, 17, 17, 17, 17, 14},
+	{30, 17, 17, 30, 16, 16, 16}, {14, 17, 17, 17, 21, 18, 13}, {30, 17, 17, 30, 20, 18, 17},
+	{15, 16, 16, 14, 1, 1, 30},   {31, 4, 4, 4, 4, 4, 4},       {17, 17, 17, 17, 17, 17, 14},
+	{17, 17, 17, 17, 17, 10, 4},  {17, 17, 17, 21, 21, 21, 10}, {17, 17, 10, 4, 10, 17, 17},
+	{17, 17, 17, 10, 4, 4, 4},    {31, 1, 2, 4, 8, 16, 31},     {14, 8, 8, 8, 8, 8, 14},
+	{0, 16, 8, 4, 2, 1, 0},       {14, 2, 2, 2, 2, 2, 14},      {4, 10, 17, 0, 0, 0, 0},
+	{0, 0, 0, 0, 0, 0, 31},
 };
 
 void overlay_begin(struct overlay *overlay, uint32_t width, uint32_t height)
@@ -62,7 +68,7 @@ static bool reserve(struct overlay *overlay, size_t extra)
 }
 
 static void add_quad(struct overlay *overlay, const float corners[4][2], const float uv[4][2], uint32_t color,
-                     double alpha)
+					 double alpha)
 {
 	if (!reserve(overlay, 6))
 		return;
@@ -85,7 +91,7 @@ static const float solid[4][2] = {
 };
 
 void overlay_rectangle(struct overlay *overlay, double x, double y, double width, double height, uint32_t color,
-                       double alpha)
+					   double alpha)
 {
 	float x0 = (float)floor(x + 0.5), y0 = (float)floor(y + 0.5);
 	float x1 = (float)floor(x + width + 0.5), y1 = (float)floor(y + height + 0.5);
@@ -95,7 +101,7 @@ void overlay_rectangle(struct overlay *overlay, double x, double y, double width
 }
 
 void overlay_frame(struct overlay *overlay, double x, double y, double width, double height, double line,
-                   uint32_t color, double alpha)
+				   uint32_t color, double alpha)
 {
 	overlay_rectangle(overlay, x, y, width, line, color, alpha);
 	overlay_rectangle(overlay, x, y + height - line, width, line, color, alpha);
@@ -103,17 +109,17 @@ void overlay_frame(struct overlay *overlay, double x, double y, double width, do
 	overlay_rectangle(overlay, x + width - line, y + line, line, height - 2.0 * line, color, alpha);
 }
 
-void overlay_line(struct overlay *overlay, double x0, double y0, double x1, double y1, double thickness,
-                  uint32_t color, double alpha)
+void overlay_line(struct overlay *overlay, double x0, double y0, double x1, double y1, double thickness, uint32_t color,
+				  double alpha)
 {
 	double dx = x1 - x0, dy = y1 - y0, length = hypot(dx, dy);
 	if (length <= 0.0)
 		return;
 	double nx = -dy / length * thickness * 0.5, ny = dx / length * thickness * 0.5;
 	const float corners[4][2] = {{(float)(x0 + nx), (float)(y0 + ny)},
-	                             {(float)(x1 + nx), (float)(y1 + ny)},
-	                             {(float)(x1 - nx), (float)(y1 - ny)},
-	                             {(float)(x0 - nx), (float)(y0 - ny)}};
+								 {(float)(x1 + nx), (float)(y1 + ny)},
+								 {(float)(x1 - nx), (float)(y1 - ny)},
+								 {(float)(x0 - nx), (float)(y0 - ny)}};
 	add_quad(overlay, corners, solid, color, alpha);
 }
 

@@ -119,14 +119,16 @@ static double flown(double time)
 
 static void plan(const struct scene *scene, double time, struct stage_plan *out)
 {
-	static const float colors[5][4] = {
-		{0.96f, 0.78f, 0.24f, 0}, {0.30f, 0.80f, 0.86f, 0}, {0.95f, 0.42f, 0.34f, 0}, {0.55f, 0.86f, 0.42f, 0},
-		{0.86f, 0.60f, 0.95f, 0}};
+	static const float colors[5][4] = {{0.96f, 0.78f, 0.24f, 0},
+									   {0.30f, 0.80f, 0.86f, 0},
+									   {0.95f, 0.42f, 0.34f, 0},
+									   {0.55f, 0.86f, 0.42f, 0},
+									   {0.86f, 0.60f, 0.95f, 0}};
 	struct flight flight;
 	out->cell = floor(flown(time) / cell);
 	if (flight_at(time, &flight) && in_sight(&flight, time)) {
 		struct stage_draw *draw = stage_draw(out, STAGE_SOLID, flight.open ? RANGE_OPEN : RANGE_CLOSED, PART_RING,
-		                                     (uint32_t)(flight.ring % 1000000u) * 16u);
+											 (uint32_t)(flight.ring % 1000000u) * 16u);
 		draw->tinted = true;
 		for (int c = 0; c < 4; c++)
 			draw->tint[c] = colors[flight.color][c];
@@ -142,7 +144,8 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 /* From just outside one border to just outside the other, on a shallow arc, in the camera's space. */
 static struct mat4 ring_in_view(const struct scene *scene, const struct flight *flight, double time)
 {
-	double aspect = (double)scene->width / (double)scene->height, s = (time - flight->start) / (flight->end - flight->start);
+	double aspect = (double)scene->width / (double)scene->height,
+		   s = (time - flight->start) / (flight->end - flight->start);
 	double edge = tan(scene->look.fov_y * 0.5) * aspect * flight->depth + (radius + thickness) * 1.25;
 	double x = edge * (2.0 * s - 1.0) * (flight->leftward ? -1.0 : 1.0);
 	double z = -flight->depth - 1.2 * sin(SCENE_PI * s), y = flight->height + 0.35 * sin(SCENE_PI * s);
@@ -153,7 +156,7 @@ static struct mat4 ring_in_view(const struct scene *scene, const struct flight *
 static void pose(const struct scene *scene, double time, const struct stage_plan *out, struct stage_pose *pose)
 {
 	struct vec3 eye = vec3(0.8 * scene_wave(time, 9.0, 0.0), 2.1 + 0.2 * scene_wave(time, 7.0, 0.2),
-	                       -(flown(time) - out->cell * cell));
+						   -(flown(time) - out->cell * cell));
 	double yaw = 0.06 * scene_wave(time, 11.0, 0.0);
 	struct flight flight;
 	pose->view = mat4_look_at(eye, vec3_add(eye, vec3(sin(yaw), 0.02, -cos(yaw))));
@@ -179,7 +182,7 @@ static void key(struct scene *scene, double time, int key)
 {
 	struct flight flight;
 	if ((key != 'o' && key != 'c') || !flight_at(time, &flight) || !in_sight(&flight, time) ||
-	    find_answer(scene, flight.ring))
+		find_answer(scene, flight.ring))
 		return;
 	if (scene->answer_count == scene->answer_capacity) {
 		size_t wanted = scene->answer_capacity ? scene->answer_capacity * 2 : 64;
@@ -222,8 +225,10 @@ static void overlay(const struct scene *scene, double time, struct overlay *ui)
 	const struct {
 		const char *name;
 		uint32_t value, color;
-	} rows[4] = {{"RINGS", now.shown, 0xe8f0ff}, {"HITS", now.hits, 0x80f090}, {"MISSES", now.misses, 0xf0d070},
-	             {"FALSE", now.false_answers, 0xf08070}};
+	} rows[4] = {{"RINGS", now.shown, 0xe8f0ff},
+				 {"HITS", now.hits, 0x80f090},
+				 {"MISSES", now.misses, 0xf0d070},
+				 {"FALSE", now.false_answers, 0xf08070}};
 	for (int i = 0; i < 4; i++) {
 		snprintf(text, sizeof(text), "%-7s%4u", rows[i].name, rows[i].value % 10000u);
 		overlay_text(ui, 9 * unit, (10 + 11 * i) * unit, 1.0, rows[i].color, text);

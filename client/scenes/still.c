@@ -11,11 +11,12 @@ static const double table = 0.0;
 
 static void build_vessels(struct mesh *mesh)
 {
-	static const double jug[][2] = {{0.12, 0.0},  {0.19, 0.06}, {0.24, 0.20}, {0.22, 0.36}, {0.13, 0.50},
-	                                {0.10, 0.60}, {0.13, 0.70}, {0.115, 0.70}, {0.09, 0.60}};
+	static const double jug[][2] = {{0.12, 0.0},  {0.19, 0.06}, {0.24, 0.20},  {0.22, 0.36}, {0.13, 0.50},
+									{0.10, 0.60}, {0.13, 0.70}, {0.115, 0.70}, {0.09, 0.60}};
 	static const double bowl[][2] = {{0.12, 0.0},  {0.10, 0.03}, {0.24, 0.10}, {0.34, 0.22},
-	                                 {0.32, 0.22}, {0.22, 0.12}, {0.0, 0.08}};
-	static const double bottle[][2] = {{0.11, 0.0}, {0.115, 0.42}, {0.10, 0.52}, {0.04, 0.64}, {0.036, 0.80}, {0.05, 0.80}, {0.05, 0.86}, {0.0, 0.86}};
+									 {0.32, 0.22}, {0.22, 0.12}, {0.0, 0.08}};
+	static const double bottle[][2] = {{0.11, 0.0},   {0.115, 0.42}, {0.10, 0.52}, {0.04, 0.64},
+									   {0.036, 0.80}, {0.05, 0.80},  {0.05, 0.86}, {0.0, 0.86}};
 	mesh->brush.id = 10;
 	mesh_material(mesh, LAYER_FABRIC, 0.75);
 	mesh_tint(mesh, 0x5f8fb8);
@@ -38,9 +39,10 @@ static void build_fruit(struct mesh *mesh)
 	static const struct {
 		double x, y, z, radius;
 		uint32_t tint;
-	} fruit[] = {{0.02, 0.22, 0.10, 0.105, 0xf09030},  {0.22, 0.22, 0.12, 0.10, 0xe87828},  {0.13, 0.22, -0.08, 0.105, 0xf4a038},
-	             {0.12, 0.36, 0.05, 0.10, 0xd84030},   {-0.22, 0.095, 0.36, 0.095, 0xc83830}, {0.52, 0.10, 0.30, 0.10, 0xf0b840},
-	             {0.70, 0.085, 0.18, 0.085, 0xa8c048}};
+	} fruit[] = {{0.02, 0.22, 0.10, 0.105, 0xf09030},   {0.22, 0.22, 0.12, 0.10, 0xe87828},
+				 {0.13, 0.22, -0.08, 0.105, 0xf4a038},  {0.12, 0.36, 0.05, 0.10, 0xd84030},
+				 {-0.22, 0.095, 0.36, 0.095, 0xc83830}, {0.52, 0.10, 0.30, 0.10, 0xf0b840},
+				 {0.70, 0.085, 0.18, 0.085, 0xa8c048}};
 	mesh_material(mesh, LAYER_PLAIN, 0.3);
 	for (uint32_t i = 0; i < sizeof(fruit) / sizeof(fruit[0]); i++) {
 		mesh->brush.id = 20 + i;
@@ -50,7 +52,7 @@ static void build_fruit(struct mesh *mesh)
 		mesh_tint(mesh, 0x5a4428);
 		mesh->brush.id = 40 + i;
 		mesh_limb(mesh, vec3(fruit[i].x, table + fruit[i].y + r * 0.86, fruit[i].z), 0.012,
-		          vec3(fruit[i].x + 0.02, table + fruit[i].y + r * 1.15, fruit[i].z + 0.01), 0.009, 6);
+				  vec3(fruit[i].x + 0.02, table + fruit[i].y + r * 1.15, fruit[i].z + 0.01), 0.009, 6);
 	}
 }
 
@@ -87,11 +89,14 @@ static void build_cloth(struct mesh *mesh)
 	mesh_tint(mesh, 0xd86a58);
 	for (int j = 0; j <= DOWN; j++) {
 		for (int i = 0; i <= ACROSS; i++) {
-			double u = (double)i / ACROSS, d = (double)j / DOWN, x = -0.52 + 0.95 * u + 0.08 * d, over = fmax(0.0, d - 0.55) / 0.45;
+			double u = (double)i / ACROSS, d = (double)j / DOWN, x = -0.52 + 0.95 * u + 0.08 * d,
+				   over = fmax(0.0, d - 0.55) / 0.45;
 			double fold = sin(u * 19.0) * 0.02 * over;
-			struct vec3 p = vec3(x, table + 0.006 - 0.5 * over * over * 0.9 + 0.012 * sin(u * 7.0 + d * 5.0) * (1 - over) + 0.012,
-			                     0.24 + 0.59 * fmin(d / 0.55, 1.0) + 0.03 * over + fold);
-			v[j][i] = mesh_add_vertex(mesh, p, vec3(-cos(u * 19.0) * 0.5 * over, 1.0 - over * 0.85, over), u * 2.0, d * 2.0);
+			struct vec3 p =
+				vec3(x, table + 0.006 - 0.5 * over * over * 0.9 + 0.012 * sin(u * 7.0 + d * 5.0) * (1 - over) + 0.012,
+					 0.24 + 0.59 * fmin(d / 0.55, 1.0) + 0.03 * over + fold);
+			v[j][i] =
+				mesh_add_vertex(mesh, p, vec3(-cos(u * 19.0) * 0.5 * over, 1.0 - over * 0.85, over), u * 2.0, d * 2.0);
 		}
 	}
 	for (int j = 0; j < DOWN; j++) {
@@ -111,7 +116,8 @@ static void build_room(struct mesh *mesh)
 	mesh->brush.id = 2;
 	mesh_material(mesh, LAYER_BRICK, 1.2);
 	mesh_tint(mesh, 0xd8ccc0);
-	mesh_quad(mesh, vec3(-4, -2, -0.88), vec3(4, -2, -0.88), vec3(4, 0.12, -0.88), vec3(-4, 0.12, -0.88), vec3(0, 0, 1));
+	mesh_quad(mesh, vec3(-4, -2, -0.88), vec3(4, -2, -0.88), vec3(4, 0.12, -0.88), vec3(-4, 0.12, -0.88),
+			  vec3(0, 0, 1));
 	mesh->brush.id = 3;
 	mesh_material(mesh, LAYER_WOOD, 1.2);
 	mesh_tint(mesh, 0xd8a878);

@@ -51,7 +51,8 @@ void main()
 	vec3 normal = normalize(mat3(u_model) * a_normal);
 	vec3 tint = a_tint.rgb * u_draw_tint.rgb;
 	tint *= tint;
-	vec3 ambient = mix(u_bounce_color, u_sky_color, normal.y * 0.5 + 0.5) * a_tint.a + float(a_extra.w) / 64.0 + u_draw_tint.a;
+	vec3 ambient = mix(u_bounce_color, u_sky_color, normal.y * 0.5 + 0.5) * a_tint.a;
+	ambient += float(a_extra.w) / 64.0 + u_draw_tint.a;
 	vec3 sun = u_sun_color * max(dot(normal, u_sun_direction), 0.0);
 #ifdef SHADOWED
 	v_light = tint * ambient;

@@ -16,7 +16,7 @@ static GLuint create_texture(struct scene *scene, GLenum internal, GLenum format
 	gl->GenTextures(1, &texture);
 	gl->BindTexture(GL_TEXTURE_2D, texture);
 	gl->TexImage2D(GL_TEXTURE_2D, 0, (GLint)internal, (GLsizei)scene->width, (GLsizei)scene->height, 0, format, type,
-	               NULL);
+				   NULL);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
@@ -57,8 +57,8 @@ bool stage_create_targets(struct scene *scene, char *error, size_t error_size)
 	GLint limit = 0;
 	gl->GetIntegerv(GL_MAX_TEXTURE_SIZE, &limit);
 	if ((GLint)scene->width > limit || (GLint)scene->height > limit) {
-		snprintf(error, error_size, "the picture is %ux%u, but this GL's textures end at %d", scene->width, scene->height,
-		         limit);
+		snprintf(error, error_size, "the picture is %ux%u, but this GL's textures end at %d", scene->width,
+				 scene->height, limit);
 		return false;
 	}
 	scene->targets[TARGET_COLOR] = create_texture(scene, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
@@ -70,8 +70,8 @@ bool stage_create_targets(struct scene *scene, char *error, size_t error_size)
 	gl->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, (GLsizei)scene->width, (GLsizei)scene->height);
 	gl->GenFramebuffers(1, &scene->frame);
 	if (!finish_frame(scene, scene->targets, scene->frame) || (scene->kind->overlay && !create_ui(scene))) {
-		snprintf(error, error_size, "this GL cannot render to colour, depth, motion and id of %ux%u at once", scene->width,
-		         scene->height);
+		snprintf(error, error_size, "this GL cannot render to colour, depth, motion and id of %ux%u at once",
+				 scene->width, scene->height);
 		return false;
 	}
 	return true;
@@ -161,7 +161,7 @@ bool scene_read(struct scene *scene, const struct scene_pixels *pixels)
 		{scene->frame, GL_COLOR_ATTACHMENT1, GL_RED, GL_FLOAT, GL_RGBA, 1, 4, (uint8_t *)pixels->depth, false},
 		{scene->frame, GL_COLOR_ATTACHMENT2, GL_RG, GL_FLOAT, GL_RGBA, 2, 4, (uint8_t *)pixels->backward, false},
 		{scene->frame, GL_COLOR_ATTACHMENT3, GL_RED_INTEGER, GL_UNSIGNED_INT, GL_RGBA_INTEGER, 1, 4,
-	     (uint8_t *)pixels->object_id, false},
+		 (uint8_t *)pixels->object_id, false},
 		{scene->forward_frame, GL_COLOR_ATTACHMENT2, GL_RG, GL_FLOAT, GL_RGBA, 2, 4, (uint8_t *)pixels->forward, false},
 		{scene->ui_frame, GL_COLOR_ATTACHMENT0, GL_RGBA, GL_UNSIGNED_BYTE, GL_RGBA, 4, 1, pixels->ui, true},
 	};

@@ -10,7 +10,7 @@ enum { STAGES = 7 };
 
 /* Half width and height of the tower's levels. */
 static const double levels[STAGES + 1][2] = {{6.0, 0.6},  {4.7, 5.0},  {3.8, 9.2},  {3.1, 13.2},
-                                             {2.5, 17.0}, {2.0, 20.6}, {1.6, 24.0}, {0.25, 33.0}};
+											 {2.5, 17.0}, {2.0, 20.6}, {1.6, 24.0}, {0.25, 33.0}};
 
 static struct vec3 corner(int level, int which)
 {
@@ -23,7 +23,8 @@ static void build_stage(struct mesh *mesh, int level)
 {
 	double leg = 0.62 - 0.055 * level, brace = 0.30 - 0.02 * level;
 	for (int k = 0; k < 4; k++) {
-		struct vec3 a = corner(level, k), b = corner(level, k + 1), c = corner(level + 1, k), d = corner(level + 1, k + 1);
+		struct vec3 a = corner(level, k), b = corner(level, k + 1), c = corner(level + 1, k),
+					d = corner(level + 1, k + 1);
 		mesh_tint(mesh, 0xc8603c);
 		mesh->brush.id = (uint32_t)(10 + level * 40 + k);
 		mesh_beam(mesh, a, c, leg, leg);
@@ -104,14 +105,14 @@ static void build_ground(struct mesh *mesh)
 	mesh_material(mesh, LAYER_PAVING, 4.0);
 	mesh_tint(mesh, 0xece0d0);
 	mesh_quad(mesh, vec3(-square, 0, -square), vec3(square, 0, -square), vec3(square, 0, square),
-	          vec3(-square, 0, square), vec3(0, 1, 0));
+			  vec3(-square, 0, square), vec3(0, 1, 0));
 	mesh_material(mesh, LAYER_GRASS, 6.0);
 	mesh_tint(mesh, 0xc8e0a0);
 	mesh->brush.id = 2;
 	for (int k = 0; k < 4; k++) {
 		mesh->transform = mat4_rotation_y(k * SCENE_PI / 2.0);
 		mesh_quad(mesh, vec3(-far, 0, -far), vec3(far, 0, -far), vec3(square, 0, -square), vec3(-square, 0, -square),
-		          vec3(0, 1, 0));
+				  vec3(0, 1, 0));
 	}
 	mesh->transform = mat4_identity();
 }
@@ -121,7 +122,8 @@ static void build_city(struct mesh *mesh)
 	static const uint32_t tints[5] = {0xf0d8b8, 0xe0b090, 0xd8d0c8, 0xc0c8d8, 0xf0e8d8};
 	mesh_material(mesh, LAYER_FACADE, 12.0);
 	for (uint32_t i = 0; i < 44; i++) {
-		double angle = 2.0 * SCENE_PI * (i + 0.6 * scene_random(i, 1)) / 44.0, distance = 62.0 + 40.0 * scene_random(i, 2);
+		double angle = 2.0 * SCENE_PI * (i + 0.6 * scene_random(i, 1)) / 44.0,
+			   distance = 62.0 + 40.0 * scene_random(i, 2);
 		double width = 5.0 + 5.0 * scene_random(i, 3), height = 6.0 + 12.0 * scene_random(i, 4) * scene_random(i, 5);
 		mesh->transform = mat4_multiply(mat4_rotation_y(angle), mat4_translation(0, 0, -distance));
 		mesh->brush.id = 600 + i;
@@ -132,11 +134,11 @@ static void build_city(struct mesh *mesh)
 		mesh_tint(mesh, 0xb06048);
 		double ridge = height + width * 0.5;
 		mesh_quad(mesh, vec3(-width - 0.4, height, width + 0.4), vec3(width + 0.4, height, width + 0.4),
-		          vec3(width, ridge, 0), vec3(-width, ridge, 0), vec3(0, 0.9, 0.45));
+				  vec3(width, ridge, 0), vec3(-width, ridge, 0), vec3(0, 0.9, 0.45));
 		mesh_quad(mesh, vec3(-width - 0.4, height, width + 0.4), vec3(-width, ridge, 0),
-		          vec3(-width - 0.4, height, -width - 0.4), vec3(-width - 0.4, height, -width), vec3(-1, 0.2, 0));
+				  vec3(-width - 0.4, height, -width - 0.4), vec3(-width - 0.4, height, -width), vec3(-1, 0.2, 0));
 		mesh_quad(mesh, vec3(width + 0.4, height, width + 0.4), vec3(width, ridge, 0),
-		          vec3(width + 0.4, height, -width - 0.4), vec3(width + 0.4, height, -width), vec3(1, 0.2, 0));
+				  vec3(width + 0.4, height, -width - 0.4), vec3(width + 0.4, height, -width), vec3(1, 0.2, 0));
 	}
 	mesh->transform = mat4_identity();
 }

@@ -57,7 +57,7 @@ static void build_trunk(struct mesh *mesh, const struct tree *tree, int segments
 			double a = 2.0 * SCENE_PI * i / segments;
 			struct vec3 n = vec3(cos(a), 0, sin(a));
 			uint32_t v = mesh_add_vertex(mesh, vec3_add(middle, vec3_scale(n, r)), n, (double)i / segments,
-			                             tree->height * t / 1.6 + scene_random(tree->seed, 9));
+										 tree->height * t / 1.6 + scene_random(tree->seed, 9));
 			if (j > 0 && i > 0) {
 				mesh_add_triangle(mesh, before[i - 1], before[i], v);
 				mesh_add_triangle(mesh, before[i - 1], v, v - 1);
@@ -72,7 +72,8 @@ static void build_trunk(struct mesh *mesh, const struct tree *tree, int segments
 
 static struct vec3 branch_end(const struct tree *tree, uint32_t k, struct vec3 *start)
 {
-	double t = 0.34 + 0.6 * (k + scene_random(tree->seed, 20 + k)) / 7.0, angle = 2.4 * k + 6.28 * scene_random(tree->seed, 7);
+	double t = 0.34 + 0.6 * (k + scene_random(tree->seed, 20 + k)) / 7.0,
+		   angle = 2.4 * k + 6.28 * scene_random(tree->seed, 7);
 	double length = 0.8 + 1.3 * (1.0 - t) + 0.4 * scene_random(tree->seed, 30 + k);
 	*start = trunk_at(tree, t);
 	return vec3_add(*start, vec3(length * cos(angle), length * 0.62, length * sin(angle)));
@@ -125,7 +126,8 @@ static void build_tufts(struct mesh *mesh, uint32_t variant, uint32_t band)
 		mesh_tint(mesh, tints[scene_hash(seed) % 3]);
 		mesh->brush.sway = 90;
 		mesh->brush.sway_phase = (uint8_t)scene_hash(seed + 1);
-		mesh_card(mesh, at, vec3(size * 1.2, 0, 0.3 * (scene_random(seed, 4) - 0.5)), vec3(0, size, 0), vec3(0, 1, 0.3));
+		mesh_card(mesh, at, vec3(size * 1.2, 0, 0.3 * (scene_random(seed, 4) - 0.5)), vec3(0, size, 0),
+				  vec3(0, 1, 0.3));
 	}
 	mesh->brush.sway = 0;
 }
@@ -188,8 +190,8 @@ static double walked(double time)
 }
 
 /* Cells from the middle outwards, bands from near to far. */
-static void plan_band(const struct stage_plan *plan, struct stage_plan *out, enum stage_program program,
-                      uint32_t first, uint32_t band)
+static void plan_band(const struct stage_plan *plan, struct stage_plan *out, enum stage_program program, uint32_t first,
+					  uint32_t band)
 {
 	for (int i = 0; i < CELLS; i++) {
 		int k = MIDDLE + ((i & 1) ? (i + 1) / 2 : -i / 2);
@@ -216,7 +218,8 @@ static void plan(const struct scene *scene, double time, struct stage_plan *out)
 
 static void pose(const struct scene *scene, double time, const struct stage_plan *out, struct stage_pose *pose)
 {
-	struct vec3 eye = vec3(walked(time) - out->cell * cell, 1.7 + 0.03 * scene_wave(time, 1.1, 0.0), 0.5 * scene_wave(time, 19.0, 0));
+	struct vec3 eye =
+		vec3(walked(time) - out->cell * cell, 1.7 + 0.03 * scene_wave(time, 1.1, 0.0), 0.5 * scene_wave(time, 19.0, 0));
 	double yaw = 0.22 * scene_wave(time, 15.0, 0.1), pitch = 0.12 + 0.05 * scene_wave(time, 11.0, 0.4);
 	pose->view = mat4_look_at(eye, vec3_add(eye, vec3(sin(yaw), sin(pitch), -cos(yaw))));
 	for (int k = 0; k < CELLS; k++)

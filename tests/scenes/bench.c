@@ -55,8 +55,8 @@ static void bench(const char *name, uint32_t width, uint32_t height)
 	}
 	qsort(cpu, FRAMES, sizeof(cpu[0]), compare);
 	qsort(times, FRAMES, sizeof(times[0]), compare);
-	printf("scene %ux%u %-10s least %6.2f cpu %6.2f ms p50 %6.2f ms p99 %6.2f ms create %4.0f ms\n", width, height, name,
-	       cpu[0], cpu[FRAMES / 2], times[FRAMES / 2], times[FRAMES - 1], create);
+	printf("scene %ux%u %-10s least %6.2f cpu %6.2f ms p50 %6.2f ms p99 %6.2f ms create %4.0f ms\n", width, height,
+		   name, cpu[0], cpu[FRAMES / 2], times[FRAMES / 2], times[FRAMES - 1], create);
 	fflush(stdout);
 	scene_destroy(&scene);
 }

@@ -30,7 +30,7 @@ struct lookup {
 };
 
 static bool look_up(const struct picture *now, size_t i, const struct picture *then, double x, double y,
-                    struct lookup *lookup)
+					struct lookup *lookup)
 {
 	double fx = floor(x - 0.5), fy = floor(y - 0.5), tx = x - 0.5 - fx, ty = y - 0.5 - fy;
 	if (!(fx >= 0.0 && fy >= 0.0 && fx + 1.0 < WIDTH && fy + 1.0 < HEIGHT))
@@ -113,8 +113,9 @@ static void check_scene(const char *name, double least_psnr, double least_part, 
 	double part = (double)sum.pixels / (4.0 * WIDTH * HEIGHT), warped = psnr(sum.color_error, sum.pixels);
 	double unmoved = psnr(sum.unmoved_error, sum.pixels), off = sum.motion_error / (double)sum.pixels;
 	double far_off = (double)sum.far_off / (double)sum.pixels;
-	printf("%-10s warped %.1f dB, unmoved %.1f dB, on %.0f%%; forward and backward differ by %.4f px, %.3f%% by over 0.1\n",
-	       name, warped, unmoved, 100.0 * part, off, 100.0 * far_off);
+	printf("%-10s warped %.1f dB, unmoved %.1f dB, on %.0f%%; forward and backward differ by %.4f px, %.3f%% by over "
+		   "0.1\n",
+		   name, warped, unmoved, 100.0 * part, off, 100.0 * far_off);
 	CHECK(warped >= least_psnr);
 	CHECK(warped >= unmoved + least_gain);
 	CHECK(part >= least_part);
@@ -203,7 +204,7 @@ static bool invert(const float *in, double *out)
 
 /* Where depth and the cameras say that the pixel's point was. */
 static void reproject(const struct scene_camera *camera, const double *inverse, double x, double y, double depth,
-                      double *out)
+					  double *out)
 {
 	double clip[4] = {x / WIDTH * 2.0 - 1.0, 1.0 - y / HEIGHT * 2.0, depth * 2.0 - 1.0, 1.0}, world[4], then[4];
 	for (int r = 0; r < 4; r++) {
@@ -244,7 +245,7 @@ static void cameras_depth_and_motion_agree(void)
 				continue;
 			reproject(&now.camera, inverse, x, y, (double)now.pixels.depth[i], then);
 			worst = fmax(worst, hypot(x - then[0] - (double)now.pixels.backward[2 * i],
-			                          y - then[1] - (double)now.pixels.backward[2 * i + 1]));
+									  y - then[1] - (double)now.pixels.backward[2 * i + 1]));
 			pixels++;
 		}
 		printf("%-10s depth and cameras against motion: worst %.4f px of %zu\n", names[n], worst, pixels);

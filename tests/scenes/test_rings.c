@@ -45,7 +45,7 @@ static struct sight look(const struct picture *picture)
 	for (int k = 0; k < CIRCLE && sight.whole; k++) {
 		double a = 6.2831853 * k / CIRCLE;
 		gap += !is_ring(picture, cx + 0.5 + part * 0.5 * (high_x - low_x) * cos(a),
-		                cy + 0.5 + part * 0.5 * (high_y - low_y) * sin(a));
+						cy + 0.5 + part * 0.5 * (high_y - low_y) * sin(a));
 	}
 	sight.open = gap > 2;
 	return sight;
@@ -107,7 +107,8 @@ static void rings_come_open_and_closed(void)
 	int open = 0;
 	observe(scene, rings);
 	for (int i = 0; i < RINGS; i++) {
-		printf("ring %d: from %.2f to %.2f s, %s\n", i, rings[i].first, rings[i].last, rings[i].open ? "open" : "closed");
+		printf("ring %d: from %.2f to %.2f s, %s\n", i, rings[i].first, rings[i].last,
+			   rings[i].open ? "open" : "closed");
 		CHECK(rings[i].middle > rings[i].first && rings[i].middle < rings[i].last);
 		open += rings[i].open;
 	}
