@@ -12,7 +12,7 @@
 #include <string.h>
 
 /* Small enough to stay in a core's cache between the copy and GL's own. */
-#define BLOCK_BYTES (256u * 1024u)
+#define BLOCK_BYTES (128u * 1024u)
 
 static const char *prepare(struct engine *engine)
 {

@@ -15,8 +15,11 @@ static void make_texture(struct target *target, const struct gl *gl, uint32_t wi
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-	/* Format and type matter although there is no data: Mesa chooses the order in memory after them. */
-	gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, (GLsizei)width, (GLsizei)height, 0, gl->pixel_format, gl->pixel_type,
+	/*
+	 * Without data, but format and type matter: for an internal format without a size Mesa takes the order in memory
+	 * from them, so that pixels go in and out as they are.
+	 */
+	gl->TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, (GLsizei)width, (GLsizei)height, 0, gl->pixel_format, gl->pixel_type,
 				   NULL);
 }
 
