@@ -79,7 +79,7 @@ static void build_tower(struct mesh *mesh)
 	build_platform(mesh, 2, 1.0);
 	build_platform(mesh, 6, 0.7);
 	/* Stairs wind up inside. */
-	mesh_tint(mesh, 0xd0c8b8);
+	mesh_tint(mesh, 0x4a78a8);
 	for (int i = 0; i < 36; i++) {
 		double a0 = i * SCENE_PI / 4.0, a1 = (i + 1) * SCENE_PI / 4.0, y = 0.3 + i * 0.62;
 		double r = 1.3 - 0.012 * i;
