@@ -90,6 +90,11 @@ void render_plan_pause_until(struct render *render, uint64_t vblank)
 		showing_plan(&render->showing, render->next_vblank, SHOWING_PAUSE);
 }
 
+static uint64_t later_of(uint64_t a, uint64_t b)
+{
+	return a > b ? a : b;
+}
+
 /* Vblanks that went by undecided were missed, unless nothing was due; the flip events count them. */
 static void skip_passed(struct render *render, uint64_t now_ns)
 {
@@ -104,15 +109,22 @@ static void skip_passed(struct render *render, uint64_t now_ns)
 
 /*
  * When the newest frame may be begun: at once, unless that would give it a
- * vblank that another real frame has already; then so late that it gets the
- * next one. What arrives meanwhile replaces it.
+ * vblank that another real frame has already. Then it gets the next one and is
+ * begun only as early as that needs; what arrives meanwhile replaces it.
  */
-static uint64_t real_start(const struct render *render, uint64_t now_ns)
+static uint64_t real_start(struct render *render, uint64_t now_ns)
 {
 	const uint64_t cost = render_real_cost(render);
+	if (now_ns < render->hold_until_ns)
+		return render->hold_until_ns;
 	if (!render->begun || grid_at_or_after(&render->grid, now_ns + cost) > render->real_vblank)
 		return 0;
-	return before(grid_time(&render->grid, render->real_vblank), cost) + 1;
+	const uint64_t earliest = before(grid_time(&render->grid, render->real_vblank), cost) + 1;
+	/* Half a vblank earlier than it must, since a wake-up may be late. */
+	const uint64_t slack = (uint64_t)(grid_period_ns(&render->grid) / 2.0);
+	const uint64_t needed = before(grid_time(&render->grid, render->real_vblank + 1), cost + slack);
+	render->hold_until_ns = later_of(earliest, needed);
+	return render->hold_until_ns;
 }
 
 /* A vblank before the real frame's lacks its in-between, and drawing that does not cost the real frame its vblank. */
@@ -170,11 +182,6 @@ static uint64_t wind_down(struct render *render, uint64_t now_ns)
 }
 
 /* ---- between real frames ---- */
-
-static uint64_t later_of(uint64_t a, uint64_t b)
-{
-	return a > b ? a : b;
-}
 
 /* When the picture of next_vblank is to be begun. */
 static uint64_t between_start(const struct render *render)

@@ -52,6 +52,7 @@ struct render {
 
 	struct frame frame;    /* begun last */
 	uint64_t take_again_ns; /* after a refused frame: one look a vblank is enough for a client that sends nonsense */
+	uint64_t hold_until_ns; /* a frame that came too early for a vblank of its own is not begun before */
 	bool begun;            /* the engine has it */
 	bool report_due;       /* the engine's report about it was not counted yet */
 	bool boosted;          /* it gives light that in-betweens take away */
