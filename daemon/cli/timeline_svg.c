@@ -164,7 +164,7 @@ static void draw_strip(FILE *out, const struct timeline *timeline, uint32_t firs
 	char words[64];
 	text(out, 20, y + 11, "fill=\"#444\"", "real frame");
 	text(out, 20, y + 32, "fill=\"#444\"", "shown, phase");
-	text(out, 20, y + 68, "fill=\"#444\"", "ready before");
+	text(out, 20, y + 54, "fill=\"#444\"", "ready before");
 	double scale = draw_scale(out, zero - MARGIN_HEIGHT, MARGIN_HEIGHT, most);
 	for (uint32_t i = 0; i < count; i++) {
 		const struct timeline_row *row = &timeline->rows[first + i];
