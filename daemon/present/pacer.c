@@ -109,7 +109,7 @@ static void track_delay(struct pacer *pacer, uint64_t now_ns)
 	pacer->tracked_ns = now_ns;
 	if (pacer->delay_count <= DELAY_LEARNING || fabs((double)off) > 2.0 * vblank_ns(pacer))
 		pacer->delay_ns += off; /* half the history agrees that it is elsewhere now */
-	else if (fabs((double)off) > vblank_ns(pacer))
+	else if (fabs((double)off) > vblank_ns(pacer) / 4.0) /* a steady client that slipped to the next vblank, say */
 		pacer->delay_ns += limit(off, limit(elapsed, SECOND_NS) / 50);
 	else
 		pacer->delay_ns += limit(off, limit(elapsed, SECOND_NS) / 500);
