@@ -8,9 +8,7 @@
 #include "daemon/render.h"
 
 #define MS UINT64_C(1000000)
-/* A late real frame adds so much to the margin; each that is in time takes this share of it away. */
-#define MARGIN_STEP MS
-#define MARGIN_SHARE 1600u
+#define MARGIN_STEP UINT64_C(500000)
 #define ENGINE_FIRST_DELAY (100 * MS)
 #define ENGINE_LAST_DELAY (5000 * MS)
 
@@ -236,14 +234,14 @@ static bool begin(struct render *render, const struct pacer_decision *decision)
 	return render->begun;
 }
 
-/* A larger margin is delay, a smaller one is judder: at 4 ms this settles where one real frame in 400 is late. */
+/* Settles where one real frame in two hundred is late: a larger margin is delay, a smaller one is judder. */
 static void adapt_margin(struct render *render, bool late)
 {
 	const uint64_t most_ns = (uint64_t)grid_period_ns(&render->grid);
 	if (late)
 		render->margin_ns = render->margin_ns + MARGIN_STEP < most_ns ? render->margin_ns + MARGIN_STEP : most_ns;
 	else
-		render->margin_ns -= render->margin_ns / MARGIN_SHARE;
+		render->margin_ns -= render->margin_ns < MARGIN_STEP / 200 ? render->margin_ns : MARGIN_STEP / 200;
 }
 
 /* Queues the real frame; if its vblank is over, for the next one: it is late, never lost. */

@@ -25,8 +25,6 @@ int render_init(struct render *render, const struct presenter_params *presenter_
 		return -ENODEV;
 	render->grid = *render->presenter->impl->get_grid(render->presenter);
 	showing_init(&render->showing, render->stats, grid_period_ns(&render->grid));
-	/* Generous at first: what is learned from a miss has been seen by somebody. */
-	render->margin_ns = (uint64_t)grid_period_ns(&render->grid);
 	render->paused = true;
 	return 0;
 }
