@@ -27,6 +27,10 @@
  * watches it edge-triggered and never reads it. With CONTROL "record" one file
  * open for writing.
  *
+ * OPEN_STREAM may follow HELLO at once, without waiting for WELCOME. A REFUSED
+ * with fatal 0 leaves the connection open: it refuses only the request with its
+ * serial, or with serial 0 says that the named stream ended or a frame was bad.
+ *
  * The daemon sends with MSG_DONTWAIT only; a client that does not read its
  * socket is dropped when the socket is full, never waited for.
  */
