@@ -98,14 +98,15 @@ static int spawn(struct demo_daemon *daemon, const char *program, char *const *a
 	return 0;
 }
 
-/* What the daemon said last, for the sentence of a failure. */
+/* What the daemon said last, for the sentence of a failure; hints without its name in front say nothing here. */
 static void last_words(const char *path, char *text, size_t size)
 {
 	char line[256];
 	FILE *file = fopen(path, "r");
 	text[0] = '\0';
 	while (file && fgets(line, sizeof(line), file))
-		snprintf(text, size, "%.*s", (int)strcspn(line, "\n"), line);
+		if (strstr(line, "pursuitd: "))
+			snprintf(text, size, "%.*s", (int)strcspn(line, "\n"), line);
 	if (file)
 		fclose(file);
 }
