@@ -61,18 +61,10 @@ bool shim_attach_init(struct shim_attach *attach, const char *socket_path, const
 	return strlen(socket_path) < sizeof(((struct sockaddr_un *)NULL)->sun_path);
 }
 
-static void close_fd(int *fd)
-{
-	if (*fd >= 0) {
-		close(*fd);
-		*fd = -1;
-	}
-}
-
 void shim_attach_finish(struct shim_attach *attach)
 {
-	close_fd(&attach->socket);
-	close_fd(&attach->wake);
+	shim_close_fd(&attach->socket);
+	shim_close_fd(&attach->wake);
 	shim_slots_destroy(&attach->offered);
 }
 

@@ -103,7 +103,7 @@ struct shim_slots *shim_slots_create_shared(const struct shim_layout *layout)
 	return slots;
 }
 
-static void close_fd(int *fd)
+void shim_close_fd(int *fd)
 {
 	if (*fd >= 0) {
 		close(*fd);
@@ -113,8 +113,8 @@ static void close_fd(int *fd)
 
 void shim_slots_forget_fds(struct shim_slots *slots)
 {
-	close_fd(&slots->control_fd);
-	close_fd(&slots->planes_fd);
+	shim_close_fd(&slots->control_fd);
+	shim_close_fd(&slots->planes_fd);
 }
 
 void shim_slots_destroy(struct shim_slots **slots)

@@ -71,4 +71,7 @@ enum shim_published shim_slots_publish(struct shim_slots *slots, int index, cons
 /* Lets the pages of a plain set go, if nothing of it is taken; they come back zeroed when written to. */
 void shim_slots_release_pages(struct shim_slots *slots);
 
+/* Closes *fd if it is open, and makes it -1. */
+void shim_close_fd(int *fd);
+
 #endif

@@ -13,8 +13,9 @@
  * delay is one constant that the pacer learns, so that a steady client gets a
  * steady phase and the first showing of a real frame lies near phase 0: it
  * follows the median of (first vblank - frame's time) over the last frames, so
- * slowly (2 ms a second) that no motion is seen to speed up; faster when it is
- * wrong by more than a vblank, and at once when it is wrong by more than two.
+ * slowly (2 ms a second) that no motion is seen to speed up; ten times faster
+ * when it is wrong by more than a quarter of a vblank, and at once when it is
+ * wrong by more than two vblanks.
  *
  * N is predicted: the next real frame's time is this one's + T, and it is
  * expected at the first vblank that frames of that age could reach so far. So
