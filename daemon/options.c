@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/options.h"
+#include "daemon/option_value.h"
 
 #include <ctype.h>
 #include <errno.h>
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,6 +38,11 @@ static const char *const log_choices[] = {"error", "warning", "info", "debug", N
 		option, group, OPTION_RATE, FIELD(field##_numerator), 0, value, min, max, "Hz", NULL, help \
 	}
 
+#define SIZE(field, option, group, value, min, max, help)                                      \
+	{                                                                                          \
+		option, group, OPTION_SIZE, FIELD(field##_width), 0, value, min, max, "px", NULL, help \
+	}
+
 static const struct option_row rows[] = {
 	TEXT(method, "method", OPTION_ENGINE, "pursuit",
 		 "How displayed frames are made from real ones. An unknown name is answered with the list."),
@@ -58,9 +62,22 @@ static const struct option_row rows[] = {
 		 "From the eye to the display."),
 	REAL(gamma, "gamma", OPTION_ENGINE, "0", 0, 5, "", "Gamma of the display, 1 to 5; 0 is the sRGB curve."),
 	TEXT(present, "present", OPTION_OUTPUT, "headless",
-		 "Presenters, separated by commas; the first one that works is used: headless, glfw, kms."),
+		 "Presenters, separated by commas; the first one that works is used: headless, glfw, kms. When a display is "
+		 "lost, the list is tried again."),
 	RATE(refresh, "refresh", OPTION_OUTPUT, "120", 1, 1000,
 		 "Display rate as 120, 119.88 or 120000/1001; a presenter with a display of its own may have another."),
+	TEXT(monitor, "monitor", OPTION_OUTPUT, "",
+		 "glfw: name of the monitor, or its number from 0, for full screen and for the rate; empty: the primary one."),
+	FLAG(fullscreen, "fullscreen", OPTION_OUTPUT, "no",
+		 "glfw: full screen, in the mode of the monitor that is nearest to the refresh rate wished for."),
+	SIZE(window, "window-size", OPTION_OUTPUT, "auto", 16, 16384,
+		 "glfw: size of the window; auto: that of the first picture."),
+	TEXT(connector, "connector", OPTION_OUTPUT, "",
+		 "kms: connector like HDMI-A-1 or DP-2; empty: the first one that a display is plugged into."),
+	TEXT(mode, "mode", OPTION_OUTPUT, "",
+		 "kms: mode like 1920x1080@120; empty: the display's preferred size at the rate nearest to --refresh."),
+	TEXT(kms_device, "kms-device", OPTION_OUTPUT, "",
+		 "kms: device like /dev/dri/card1; empty: the first one that has a display."),
 	TEXT(socket, "socket", OPTION_DAEMON, "",
 		 "Path of the socket; empty: $PURSUIT_SOCKET, else $XDG_RUNTIME_DIR/pursuit/socket, else /run/pursuit/socket."),
 	TEXT(record, "record", OPTION_DAEMON, "", "Record the frames received into this file, from the start."),
@@ -83,16 +100,6 @@ static const struct option_row *find_row(const char *name, size_t length)
 		if (strlen(row->name) == length && strncmp(row->name, name, length) == 0)
 			return row;
 	return NULL;
-}
-
-static void *field_of(struct settings *settings, const struct option_row *row)
-{
-	return (char *)settings + row->offset;
-}
-
-static const void *const_field_of(const struct settings *settings, const struct option_row *row)
-{
-	return (const char *)settings + row->offset;
 }
 
 /* ---- unknown names ---- */
@@ -144,189 +151,10 @@ static int refuse_unknown(const char *name, struct error *error)
 	return error_set(error, -EINVAL, "%s: there is no such setting", name);
 }
 
-/* ---- values from text ---- */
-
-static int parse_flag(const struct option_row *row, const char *text, bool *value, struct error *error)
-{
-	static const char *const yes[] = {"yes", "true", "on", "1"}, *const no[] = {"no", "false", "off", "0"};
-	for (size_t i = 0; i < 4; i++) {
-		if (strcmp(text, yes[i]) == 0 || strcmp(text, no[i]) == 0) {
-			*value = strcmp(text, yes[i]) == 0;
-			return 0;
-		}
-	}
-	return error_set(error, -EINVAL, "%s: \"%.64s\" is neither yes nor no", row->name, text);
-}
-
-static int check_range(const struct option_row *row, const char *text, double value, struct error *error)
-{
-	const char *space = *row->unit ? " " : "";
-	if (value < row->min)
-		return error_set(error, -EINVAL, "%s: %.64s is below %g%s%s", row->name, text, row->min, space, row->unit);
-	if (value > row->max)
-		return error_set(error, -EINVAL, "%s: %.64s is above %g%s%s", row->name, text, row->max, space, row->unit);
-	return 0;
-}
-
-static int parse_number(const struct option_row *row, const char *text, uint32_t *value, struct error *error)
-{
-	char *end;
-	errno = 0;
-	const long long number = strtoll(text, &end, 10);
-	if (end == text || *end || isspace((unsigned char)*text))
-		return error_set(error, -EINVAL, "%s: \"%.64s\" is not a whole number", row->name, text);
-	const int result = check_range(row, text, (double)number, error);
-	if (result == 0)
-		*value = (uint32_t)number;
-	return result;
-}
-
-static int parse_real(const struct option_row *row, const char *text, double *value, struct error *error)
-{
-	char *end;
-	const double number = strtod(text, &end);
-	if (end == text || *end || isspace((unsigned char)*text) || !isfinite(number))
-		return error_set(error, -EINVAL, "%s: \"%.64s\" is not a number", row->name, text);
-	const int result = check_range(row, text, number, error);
-	if (result < 0)
-		return result;
-	if (row->offset == FIELD(gamma) && number > 0.0 && number < 1.0)
-		return error_set(error, -EINVAL, "gamma: %.64s is neither 0 (sRGB) nor 1 to 5", text);
-	if (row->offset == FIELD(snap_threshold) && number * 4.0 != floor(number * 4.0))
-		return error_set(error, -EINVAL, "snap-threshold: %.64s is not a multiple of 0.25", text);
-	*value = number;
-	return 0;
-}
-
-static int parse_choice(const struct option_row *row, const char *text, uint32_t *value, struct error *error)
-{
-	char list[128] = "";
-	for (uint32_t i = 0; row->choices[i]; i++) {
-		const size_t used = strlen(list);
-		if (strcmp(text, row->choices[i]) == 0) {
-			*value = i;
-			return 0;
-		}
-		snprintf(list + used, sizeof(list) - used, "%s%s", i ? ", " : "", row->choices[i]);
-	}
-	return error_set(error, -EINVAL, "%s: \"%.64s\" is none of %s", row->name, text, list);
-}
-
-/* Digits with an optional fraction, exactly: 119.88 is 11988 / 100. */
-static const char *parse_decimal(const char *text, uint64_t *numerator, uint64_t *denominator)
-{
-	bool fraction = false, digits = false;
-	*numerator = 0;
-	*denominator = 1;
-	for (; isdigit((unsigned char)*text) || (*text == '.' && !fraction); text++) {
-		if (*text == '.') {
-			fraction = true;
-			continue;
-		}
-		digits = true;
-		if (*numerator >= UINT64_C(1000000000) || *denominator >= UINT64_C(1000000000))
-			return NULL;
-		*numerator = *numerator * 10 + (uint64_t)(*text - '0');
-		if (fraction)
-			*denominator *= 10;
-	}
-	return digits ? text : NULL;
-}
-
-static uint64_t greatest_common_divisor(uint64_t a, uint64_t b)
-{
-	while (b) {
-		const uint64_t rest = a % b;
-		a = b;
-		b = rest;
-	}
-	return a;
-}
-
-static int parse_rate(const struct option_row *row, const char *text, uint64_t value[2], struct error *error)
-{
-	uint64_t numerator, denominator, divisor = 1, one = 1;
-	const char *end = parse_decimal(text, &numerator, &denominator);
-	if (end && *end == '/')
-		end = denominator == 1 ? parse_decimal(end + 1, &divisor, &one) : NULL;
-	if (!end || *end || one != 1 || divisor == 0)
-		return error_set(error, -EINVAL, "%s: \"%.64s\" is not a rate like 120, 119.88 or 120000/1001", row->name,
-						 text);
-	denominator *= divisor;
-	const int result = check_range(row, text, (double)numerator / (double)denominator, error);
-	if (result < 0)
-		return result;
-	const uint64_t common = greatest_common_divisor(numerator, denominator);
-	value[0] = numerator / common;
-	value[1] = denominator / common;
-	return 0;
-}
-
-/* "auto", "egl", "egl-device:INDEX", "osmesa" */
-static int parse_context(const char *text, enum engine_context_kind *kind, uint32_t *device, struct error *error)
-{
-	static const char *const names[] = {"auto", "egl", "egl-device:", "osmesa"};
-	const size_t prefix = strlen(names[ENGINE_CONTEXT_EGL_DEVICE]);
-	*device = 0;
-	if (strncmp(text, names[ENGINE_CONTEXT_EGL_DEVICE], prefix) == 0) {
-		char *end;
-		const unsigned long index = strtoul(text + prefix, &end, 10);
-		if (!isdigit((unsigned char)text[prefix]) || *end || index > 255)
-			return error_set(error, -EINVAL, "context: \"%.64s\": the index of the device must be 0 to 255", text);
-		*kind = ENGINE_CONTEXT_EGL_DEVICE;
-		*device = (uint32_t)index;
-		return 0;
-	}
-	for (unsigned i = 0; i < 4; i++) {
-		if (i != ENGINE_CONTEXT_EGL_DEVICE && strcmp(text, names[i]) == 0) {
-			*kind = (enum engine_context_kind)i;
-			return 0;
-		}
-	}
-	return error_set(error, -EINVAL, "context: \"%.64s\" is none of auto, egl, egl-device:INDEX, osmesa", text);
-}
-
-static int parse_text(struct settings *settings, const struct option_row *row, const char *text, struct error *error)
-{
-	enum engine_context_kind kind;
-	uint32_t device;
-	if (strlen(text) >= row->size)
-		return error_set(error, -EINVAL, "%s: \"%.32s...\" is longer than %zu bytes", row->name, text, row->size - 1);
-	for (const char *c = text; *c; c++)
-		if (iscntrl((unsigned char)*c))
-			return error_set(error, -EINVAL, "%s: holds a control character (%d)", row->name, *c);
-	if (row->offset == FIELD(context) && parse_context(text, &kind, &device, error) < 0)
-		return -EINVAL;
-	if ((row->offset == FIELD(method) || row->offset == FIELD(present)) && !*text)
-		return error_set(error, -EINVAL, "%s: is empty", row->name);
-	memset(field_of(settings, row), 0, row->size);
-	memcpy(field_of(settings, row), text, strlen(text));
-	return 0;
-}
-
-static int set_row(struct settings *settings, const struct option_row *row, const char *value, struct error *error)
-{
-	switch (row->type) {
-	case OPTION_TEXT:
-		return parse_text(settings, row, value, error);
-	case OPTION_FLAG:
-		return parse_flag(row, value, field_of(settings, row), error);
-	case OPTION_NUMBER:
-		return parse_number(row, value, field_of(settings, row), error);
-	case OPTION_REAL:
-		return parse_real(row, value, field_of(settings, row), error);
-	case OPTION_CHOICE:
-		return parse_choice(row, value, field_of(settings, row), error);
-	case OPTION_RATE:
-		return parse_rate(row, value, field_of(settings, row), error);
-	}
-	return error_set(error, -EINVAL, "%s: has no type", row->name);
-}
-
 int settings_set(struct settings *settings, const char *name, const char *value, struct error *error)
 {
 	const struct option_row *row = find_row(name, strlen(name));
-	return row ? set_row(settings, row, value, error) : refuse_unknown(name, error);
+	return row ? option_value_set(settings, row, value, error) : refuse_unknown(name, error);
 }
 
 void settings_defaults(struct settings *settings)
@@ -334,26 +162,11 @@ void settings_defaults(struct settings *settings)
 	memset(settings, 0, sizeof(*settings));
 	for (const struct option_row *row = rows; row->name; row++) {
 		struct error error;
-		if (set_row(settings, row, row->default_value, &error) < 0) {
+		if (option_value_set(settings, row, row->default_value, &error) < 0) {
 			fprintf(stderr, "bug: %s\n", error.text);
 			abort();
 		}
 	}
-}
-
-/* ---- values to text ---- */
-
-static void print_rate(const uint64_t rate[2], char *value, size_t size)
-{
-	const uint64_t million = rate[1] ? 1000000 / rate[1] : 0;
-	if (rate[1] == 1)
-		snprintf(value, size, "%" PRIu64, rate[0]);
-	else if (rate[1] == 100)
-		snprintf(value, size, "%" PRIu64 ".%02" PRIu64, rate[0] / 100, rate[0] % 100);
-	else if (rate[1] && 1000000 % rate[1] == 0)
-		snprintf(value, size, "%" PRIu64 ".%06" PRIu64, rate[0] / rate[1], rate[0] % rate[1] * million);
-	else
-		snprintf(value, size, "%" PRIu64 "/%" PRIu64, rate[0], rate[1]);
 }
 
 int settings_get(const struct settings *settings, const char *name, char *value, size_t size)
@@ -361,27 +174,7 @@ int settings_get(const struct settings *settings, const char *name, char *value,
 	const struct option_row *row = find_row(name, strlen(name));
 	if (!row)
 		return -ENOENT;
-	const void *field = const_field_of(settings, row);
-	switch (row->type) {
-	case OPTION_TEXT:
-		snprintf(value, size, "%s", (const char *)field);
-		break;
-	case OPTION_FLAG:
-		snprintf(value, size, "%s", *(const bool *)field ? "yes" : "no");
-		break;
-	case OPTION_NUMBER:
-		snprintf(value, size, "%" PRIu32, *(const uint32_t *)field);
-		break;
-	case OPTION_REAL:
-		snprintf(value, size, "%.10g", *(const double *)field);
-		break;
-	case OPTION_CHOICE:
-		snprintf(value, size, "%s", row->choices[*(const uint32_t *)field]);
-		break;
-	case OPTION_RATE:
-		print_rate(field, value, size);
-		break;
-	}
+	option_value_print(settings, row, value, size);
 	return 0;
 }
 
@@ -471,7 +264,7 @@ int settings_argument(struct settings *settings, unsigned group_mask, int argc, 
 			return error_set(error, -EINVAL, "--%s needs a value", row->name);
 		value = argv[++*index];
 	}
-	const int result = set_row(settings, row, value, error);
+	const int result = option_value_set(settings, row, value, error);
 	return result < 0 ? result : 1;
 }
 
@@ -493,6 +286,9 @@ static void describe_values(const struct option_row *row, char *text, size_t siz
 		for (size_t i = 0; row->choices[i] && used < size; i++)
 			used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", row->choices[i]);
 		return;
+	case OPTION_SIZE:
+		snprintf(text, size, "auto, or %g to %g px each", row->min, row->max);
+		return;
 	case OPTION_NUMBER:
 	case OPTION_REAL:
 	case OPTION_RATE:
@@ -503,7 +299,7 @@ static void describe_values(const struct option_row *row, char *text, size_t siz
 
 void settings_print_help(unsigned group_mask, FILE *out)
 {
-	static const char *const values[] = {"TEXT", NULL, "NUMBER", "NUMBER", "NAME", "RATE"};
+	static const char *const values[] = {"TEXT", NULL, "NUMBER", "NUMBER", "NAME", "RATE", "WxH"};
 	for (const struct option_row *row = rows; row->name; row++) {
 		char range[128], usage[64];
 		if (!(group_mask & (1u << row->group)))
@@ -551,5 +347,5 @@ int settings_engine_params(const struct settings *settings, struct engine_params
 		.curve = settings->gamma > 0.0 ? ENGINE_CURVE_GAMMA : ENGINE_CURVE_SRGB,
 		.gamma = (float)settings->gamma,
 	};
-	return parse_context(settings->context, &params->context, &params->device, error);
+	return option_value_context(settings->context, &params->context, &params->device, error);
 }

@@ -35,6 +35,13 @@ struct settings {
 	char present[128];          /* comma-separated list of presenters, tried in turn */
 	uint64_t refresh_numerator; /* --refresh 120, 119.88, 120000/1001 */
 	uint64_t refresh_denominator;
+	char monitor[64];           /* "": the primary one */
+	bool fullscreen;
+	uint32_t window_width;      /* 0: as the first picture */
+	uint32_t window_height;
+	char connector[32];         /* "": the first that is connected */
+	char mode[32];              /* WxH@R; "": chosen by the refresh rate */
+	char kms_device[104];       /* "": the first with a display */
 	/* daemon */
 	char socket[104];           /* "": the default path */
 	char record[512];           /* "": do not record */
@@ -51,6 +58,7 @@ enum option_type {
 	OPTION_REAL,   /* double within min, max */
 	OPTION_CHOICE, /* uint32_t index into choices */
 	OPTION_RATE,   /* two uint64_t: "120", "119.88", "120000/1001" */
+	OPTION_SIZE,   /* two uint32_t within min, max: "1280x720"; "auto" is 0x0 */
 };
 
 enum option_group {

@@ -64,6 +64,14 @@ static void test_refusals(void)
 	expect("context", "glx", -EINVAL, "context: \"glx\" is none of auto, egl, egl-device:INDEX, osmesa");
 	expect("context", "egl-device:x", -EINVAL, "context: \"egl-device:x\": the index of the device must be 0 to 255");
 	expect("method", "", -EINVAL, "method: is empty");
+	expect("window-size", "auto", 0, "");
+	expect("window-size", "16x16384", 0, "");
+	expect("window-size", "15x100", -EINVAL, "window-size: 15x100 is not within 16 to 16384 px");
+	expect("window-size", "100x99999", -EINVAL, "window-size: 100x99999 is not within 16 to 16384 px");
+	expect("window-size", "100", -EINVAL, "window-size: \"100\" is neither auto nor a size like 1280x720");
+	expect("window-size", "100x100000", -EINVAL,
+		   "window-size: \"100x100000\" is neither auto nor a size like 1280x720");
+	expect("window-size", "-1x99", -EINVAL, "window-size: \"-1x99\" is neither auto nor a size like 1280x720");
 	expect("context", "egl-device:2", 0, "");
 }
 

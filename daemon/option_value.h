@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* Values of settings from text and back. Private to options.c. */
+#ifndef PURSUIT_OPTION_VALUE_H
+#define PURSUIT_OPTION_VALUE_H
+
+#include "daemon/options.h"
+
+/* Sets the row's field. 0 or -EINVAL with a sentence that names the setting and the value. */
+int option_value_set(struct settings *settings, const struct option_row *row, const char *value, struct error *error);
+
+/* Writes the present value as option_value_set() would take it. Truncates. */
+void option_value_print(const struct settings *settings, const struct option_row *row, char *value, size_t size);
+
+/* "auto", "egl", "egl-device:INDEX", "osmesa". 0 or -EINVAL with a sentence. */
+int option_value_context(const char *text, enum engine_context_kind *kind, uint32_t *device, struct error *error);
+
+#endif
