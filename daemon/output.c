@@ -14,6 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/display.h"
 #include "daemon/render.h"
 
 #define FLIPS 64u
@@ -21,17 +22,19 @@
 
 struct output {
 	struct output_params params;
+	struct display *display; /* main's */
 	pthread_t thread;
 	int event_fd;
 
 	pthread_mutex_t lock; /* the mailbox */
 	pthread_cond_t wake;
-	bool stop, woken, streams_changed;
+	bool stop, woken, streams_changed, presenter_changed;
 	bool started; /* the thread has said whether it could start */
 	int start_result;
 	struct error start_error;
 	struct stream *streams[OUTPUT_STREAMS]; /* referenced; in the order of opening */
 	uint32_t stream_count;
+	struct presenter *presenter; /* to be used from now on */
 	struct presenter_flip flips[FLIPS];
 	uint32_t flip_count;
 	struct output_event events[OUTPUT_EVENTS]; /* for main */
@@ -77,7 +80,8 @@ static void push_event(struct output *output, const struct output_event *event)
 static void report(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal)
 {
 	struct output *output = data;
-	const struct output_event event = {kind, stream->client_id, stream->stream_id, *refusal};
+	const struct output_event event = {
+		.kind = kind, .client_id = stream->client_id, .stream_id = stream->stream_id, .refusal = *refusal};
 	if (kind == OUTPUT_STREAM_BROKEN)
 		atomic_store(&stream->ended, true);
 	else if (!log_limit_allows(&stream->log_limit, clock_now(output->params.clock)))
@@ -93,6 +97,28 @@ static void engine_made(void *data, const struct engine_info *info)
 	snprintf(output->info.context, sizeof(output->info.context), "%s", info->context ? info->context : "");
 	output->info.software = info->software;
 	pthread_mutex_unlock(&output->lock);
+}
+
+/* ---- called by the display ---- */
+
+/* On main. */
+static void on_change(void *data, struct presenter *presenter)
+{
+	struct output *output = data;
+	pthread_mutex_lock(&output->lock);
+	output->presenter = presenter;
+	output->presenter_changed = true;
+	snprintf(output->info.presenter, sizeof(output->info.presenter), "%s", presenter ? presenter->impl->name : "none");
+	if (presenter)
+		output->info.grid = presenter->impl->get_grid(presenter);
+	output->woken = true;
+	pthread_cond_signal(&output->wake);
+	pthread_mutex_unlock(&output->lock);
+}
+
+static void on_key(void *data, const struct presenter_key *key)
+{
+	push_event(data, &(struct output_event){.kind = OUTPUT_KEY, .key = *key});
 }
 
 /* On the presenter's thread. */
@@ -151,6 +177,32 @@ static void adopt_streams(struct output *output, struct stream *const *streams, 
 		stream_release(&old[i]);
 }
 
+/* The rate and the phase that clients are told follow the display's. */
+static void handle_flips(struct output *output, const struct presenter_flip *flips, uint32_t count)
+{
+	if (count == 0)
+		return;
+	for (uint32_t i = 0; i < count; i++) {
+		render_flip(&output->render, &flips[i]);
+		output->stats.flips_by_source[flips[i].time_source]++;
+	}
+	const bool changed = render_follow_grid(&output->render);
+	pthread_mutex_lock(&output->lock);
+	if (changed)
+		output->info.grid = output->render.grid;
+	output->info.time_source = flips[count - 1].time_source;
+	pthread_mutex_unlock(&output->lock);
+	publish_stats(output);
+}
+
+/* Flips that come before or after a presenter's time are not its. */
+static void change_presenter(struct output *output, struct presenter *presenter)
+{
+	render_set_presenter(&output->render, presenter);
+	if (!presenter)
+		display_let_go(output->display);
+}
+
 /* Empties the mailbox. False: stop. */
 static bool read_mailbox(struct output *output)
 {
@@ -159,20 +211,20 @@ static bool read_mailbox(struct output *output)
 	uint32_t stream_count = 0;
 
 	pthread_mutex_lock(&output->lock);
-	const bool go_on = !output->stop, changed = output->streams_changed;
+	const bool go_on = !output->stop, changed = output->streams_changed, new_presenter = output->presenter_changed;
+	struct presenter *presenter = output->presenter;
 	const uint32_t flip_count = output->flip_count;
 	memcpy(flips, output->flips, flip_count * sizeof(flips[0]));
 	for (; changed && stream_count < output->stream_count; stream_count++)
 		streams[stream_count] = stream_reference(output->streams[stream_count]);
 	output->flip_count = 0;
-	output->streams_changed = false;
+	output->streams_changed = output->presenter_changed = false;
 	output->woken = false;
 	pthread_mutex_unlock(&output->lock);
 
-	for (uint32_t i = 0; i < flip_count; i++)
-		render_flip(&output->render, &flips[i]);
-	if (flip_count > 0)
-		publish_stats(output);
+	handle_flips(output, flips, flip_count);
+	if (new_presenter)
+		change_presenter(output, presenter);
 	if (changed)
 		adopt_streams(output, streams, stream_count);
 	for (uint32_t i = 0; i + 1 < output->own_count; i++)
@@ -183,32 +235,19 @@ static bool read_mailbox(struct output *output)
 
 static int start(struct output *output)
 {
-	const struct settings *settings = output->params.settings;
-	const struct presenter_params presenter_params = {
-		.clock = output->params.clock,
-		.log = output->params.log,
-		.refresh_numerator = settings->refresh_numerator,
-		.refresh_denominator = settings->refresh_denominator,
-		.flip = on_flip,
-		.data = output,
-	};
 	output->render = (struct render){
-		.settings = settings,
+		.settings = output->params.settings,
 		.clock = output->params.clock,
 		.log = output->params.log,
 		.stats = &output->stats,
 		.owner = {output, record, report, engine_made},
 	};
 	struct error error = {""};
-	const int result = render_init(&output->render, &presenter_params, &error);
+	const int result = draw_make_engine(&output->render, &error);
 	pthread_mutex_lock(&output->lock);
 	output->started = true;
 	output->start_result = result;
 	output->start_error = error;
-	if (result == 0) {
-		output->info.grid = output->render.grid;
-		snprintf(output->info.presenter, sizeof(output->info.presenter), "%s", output->render.presenter->impl->name);
-	}
 	pthread_cond_broadcast(&output->wake);
 	pthread_mutex_unlock(&output->lock);
 	return result;
@@ -230,9 +269,8 @@ struct scheduling {
  */
 static void shorten_slices(const struct output *output)
 {
-	const struct scheduling scheduling = {.size = sizeof(scheduling),
-										  .nice = getpriority(PRIO_PROCESS, (id_t)gettid()),
-										  .runtime_ns = RENDER_SLICE_NS};
+	const struct scheduling scheduling = {
+		.size = sizeof(scheduling), .nice = getpriority(PRIO_PROCESS, (id_t)gettid()), .runtime_ns = RENDER_SLICE_NS};
 	if (syscall(SYS_sched_setattr, 0, &scheduling, 0) < 0)
 		log_debug(output->params.log, "rendering with slices of the default length (%s)", strerror(errno));
 }
@@ -259,8 +297,10 @@ static void *run(void *data)
 
 /* ---- main thread ---- */
 
+/* Nothing runs any more. */
 static void free_output(struct output *output)
 {
+	display_destroy(&output->display);
 	if (output->event_fd >= 0)
 		close(output->event_fd);
 	pthread_cond_destroy(&output->wake);
@@ -291,6 +331,39 @@ static struct output *allocate(const struct output_params *params)
 	return NULL;
 }
 
+static int start_display(struct output *output, struct error *error)
+{
+	const struct display_params params = {
+		.loop = output->params.loop,
+		.log = output->params.log,
+		.clock = output->params.clock,
+		.settings = output->params.settings,
+		.flip = on_flip,
+		.key = on_key,
+		.change = on_change,
+		.data = output,
+	};
+	output->display = display_create(&params, error);
+	return output->display ? 0 : -ENODEV;
+}
+
+/* Waits until the engine is there. */
+static int start_thread(struct output *output, struct error *error)
+{
+	const int result = pthread_create(&output->thread, NULL, run, output);
+	if (result != 0)
+		return error_set(error, -result, "output: cannot start a thread: %s", strerror(result));
+	pthread_mutex_lock(&output->lock);
+	while (!output->started)
+		pthread_cond_wait(&output->wake, &output->lock);
+	pthread_mutex_unlock(&output->lock);
+	if (output->start_result == 0)
+		return 0;
+	*error = output->start_error;
+	pthread_join(output->thread, NULL);
+	return output->start_result;
+}
+
 struct output *output_create(const struct output_params *params, struct error *error)
 {
 	struct output *output = allocate(params);
@@ -298,23 +371,10 @@ struct output *output_create(const struct output_params *params, struct error *e
 		error_set(error, -ENOMEM, "output: out of memory or file descriptors");
 		return NULL;
 	}
-	const int result = pthread_create(&output->thread, NULL, run, output);
-	if (result != 0) {
-		error_set(error, -result, "output: cannot start a thread: %s", strerror(result));
-		free_output(output);
-		return NULL;
-	}
-	pthread_mutex_lock(&output->lock);
-	while (!output->started)
-		pthread_cond_wait(&output->wake, &output->lock);
-	pthread_mutex_unlock(&output->lock);
-	if (output->start_result < 0) {
-		*error = output->start_error;
-		pthread_join(output->thread, NULL);
-		free_output(output);
-		return NULL;
-	}
-	return output;
+	if (start_display(output, error) == 0 && start_thread(output, error) == 0)
+		return output;
+	free_output(output);
+	return NULL;
 }
 
 void output_destroy(struct output **output)

@@ -20,8 +20,10 @@
 #include "daemon/error.h"
 #include "daemon/intake.h"
 #include "daemon/log.h"
+#include "daemon/loop.h"
 #include "daemon/options.h"
 #include "daemon/present/grid.h"
+#include "daemon/present/presenter.h"
 #include "daemon/record/recorder.h"
 #include "daemon/stats.h"
 
@@ -32,6 +34,7 @@
 enum output_event_kind {
 	OUTPUT_FRAME_REFUSED, /* the stream goes on */
 	OUTPUT_STREAM_BROKEN, /* nothing more is taken from it: end it */
+	OUTPUT_KEY,           /* a key was pressed in the presenter's window */
 };
 
 struct output_event {
@@ -39,24 +42,27 @@ struct output_event {
 	uint64_t client_id;
 	uint64_t stream_id;
 	struct refusal refusal;
+	struct presenter_key key;
 };
 
 struct output_params {
+	struct loop *loop; /* main's */
 	const struct settings *settings; /* must live as long */
 	struct clock *clock;
 	const struct log *log;
 };
 
 struct output_info {
-	char presenter[32];
+	char presenter[32]; /* "none": lost, and no other works */
 	char renderer[128], context[32];
 	bool software;
-	struct grid grid;
+	struct grid grid; /* as it is now */
+	enum presenter_time_source time_source; /* of the last flip */
 };
 
 struct output;
 
-/* Starts the render thread and waits until engine and presenter are there. NULL with a sentence. */
+/* Opens the display, starts the render thread and waits until its engine is there. NULL with a sentence. */
 struct output *output_create(const struct output_params *params, struct error *error);
 /* Stops and joins. NULL accepted. */
 void output_destroy(struct output **output);

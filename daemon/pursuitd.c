@@ -59,7 +59,8 @@ static void print_help(void)
 		printf("  %-16s %s\n", method->name, method->description);
 	printf("\nPresenters built in:\n");
 	for (const struct presenter_impl *const *impl = presenter_impls(); *impl; impl++)
-		printf("  %-16s %s\n", (*impl)->name, (*impl)->description);
+		if ((*impl)->create)
+			printf("  %-16s %s\n", (*impl)->name, (*impl)->description);
 }
 
 /* "--config FILE" and "--config=FILE": 1 taken, 0 not it, -1 refused with a sentence. */
@@ -181,8 +182,6 @@ static void raise_priority(const struct log *log)
 static int start(struct pursuitd *daemon, struct error *error)
 {
 	static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
-	const struct output_params output_params = {&daemon->settings, &daemon->clock, &daemon->log};
-
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN); /* a file size limit is met like a full disk */
 	raise_priority(&daemon->log);
@@ -190,6 +189,7 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->loop = loop_create(error);
 	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)
 		return -1;
+	const struct output_params output_params = {daemon->loop, &daemon->settings, &daemon->clock, &daemon->log};
 	daemon->output = output_create(&output_params, error);
 	if (!daemon->output)
 		return -1;

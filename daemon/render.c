@@ -15,36 +15,62 @@
 /* Before anything was measured. */
 #define FIRST_COST_NS UINT64_C(5000000)
 
-int render_init(struct render *render, const struct presenter_params *presenter_params, struct error *error)
-{
-	const int result = draw_make_engine(render, error);
-	if (result < 0)
-		return result;
-	render->presenter = presenter_create(render->settings->present, presenter_params, error);
-	if (!render->presenter)
-		return -ENODEV;
-	render->grid = *render->presenter->impl->get_grid(render->presenter);
-	showing_init(&render->showing, render->stats, grid_period_ns(&render->grid));
-	render->paused = true;
-	return 0;
-}
-
 void render_finish(struct render *render)
 {
-	presenter_destroy(&render->presenter);
 	engine_destroy(&render->engine);
 	showing_finish(&render->showing);
 }
 
-void render_set_stream(struct render *render, struct stream *stream)
+static void close_all_frames(struct render *render)
+{
+	showing_close_frames(&render->showing, render->group + 1);
+}
+
+static void start_pacer(struct render *render)
 {
 	const struct pacer_params params = {.refresh_numerator = render->grid.numerator,
 										.refresh_denominator = render->grid.denominator,
 										.epoch_ns = render->grid.epoch_ns};
+	pacer_init(&render->pacer, &params);
+}
+
+void render_set_presenter(struct render *render, struct presenter *presenter)
+{
+	close_all_frames(render);
+	showing_finish(&render->showing);
+	render->presenter = presenter;
+	if (presenter)
+		render->grid = presenter->impl->get_grid(presenter);
+	showing_init(&render->showing, render->stats, grid_period_ns(&render->grid));
+	start_pacer(render);
+	render->begun = render->report_due = render->standby_done = render->front_plain = false;
+	render->hold_until_ns = render->take_again_ns = 0;
+	render->real_vblank = render->next_vblank = 0;
+	render->pause_vblanks = 0;
+	render->paused = true;
+}
+
+bool render_follow_grid(struct render *render)
+{
+	if (!render->presenter)
+		return false;
+	const struct grid grid = render->presenter->impl->get_grid(render->presenter);
+	if (memcmp(&grid, &render->grid, sizeof(grid)) == 0)
+		return false;
+	render->grid = grid;
+	render->showing.period_ns = grid_period_ns(&grid);
+	render->pacer.params.refresh_numerator = grid.numerator;
+	render->pacer.params.refresh_denominator = grid.denominator;
+	render->pacer.params.epoch_ns = grid.epoch_ns;
+	return true;
+}
+
+void render_set_stream(struct render *render, struct stream *stream)
+{
 	if (stream == render->stream)
 		return;
 	render->stream = stream;
-	pacer_init(&render->pacer, &params);
+	start_pacer(render);
 }
 
 void render_skip_frames(struct render *render, struct stream *stream)
@@ -66,7 +92,8 @@ void render_skip_frames(struct render *render, struct stream *stream)
 
 void render_flip(struct render *render, const struct presenter_flip *flip)
 {
-	showing_flip(&render->showing, flip);
+	if (render->presenter)
+		showing_flip(&render->showing, flip);
 }
 
 static uint64_t estimate(const struct cost *cost)
@@ -138,11 +165,6 @@ static bool fits_before_real(const struct render *render, uint64_t now_ns)
 }
 
 /* ---- pauses ---- */
-
-static void close_all_frames(struct render *render)
-{
-	showing_close_frames(&render->showing, render->group + 1);
-}
 
 /* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */
 static void pause_once(struct render *render)
@@ -242,6 +264,11 @@ uint64_t render_step(struct render *render)
 	uint64_t wake_ns = RENDER_NEVER;
 	bool urgent = false;
 
+	if (!render->presenter) {
+		if (render->stream && !atomic_load(&render->stream->ended))
+			render_skip_frames(render, render->stream);
+		return RENDER_NEVER;
+	}
 	if (!draw_revive_engine(render, now_ns))
 		return render->engine_retry_ns;
 	skip_passed(render, now_ns);

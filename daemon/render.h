@@ -43,7 +43,7 @@ struct render {
 	struct render_owner owner;
 	struct engine *engine;
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
-	struct presenter *presenter;
+	struct presenter *presenter; /* the display's; NULL: lost */
 	struct grid grid;
 	struct pacer pacer;
 	struct showing showing;
@@ -69,9 +69,15 @@ struct render {
 	uint64_t margin_ns; /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
 };
 
-/* On the render thread. 0 or -errno with a sentence. */
-int render_init(struct render *render, const struct presenter_params *presenter_params, struct error *error);
 void render_finish(struct render *render);
+
+/*
+ * Presents there from now on, beginning anew; with NULL (the display is lost) frames are taken and answered with
+ * REPLACED until there is one again.
+ */
+void render_set_presenter(struct render *render, struct presenter *presenter);
+/* Takes over the presenter's grid as it is now. Has it changed? */
+bool render_follow_grid(struct render *render);
 
 /* Shows this stream from now on (NULL: none; the picture stays). */
 void render_set_stream(struct render *render, struct stream *stream);

@@ -104,6 +104,17 @@ static json_t *names_json(const struct stats_name *names, uint32_t count)
 	return object;
 }
 
+/* Only sources that there were. */
+static json_t *time_sources_json(const struct stats *stats)
+{
+	json_t *object = json_object();
+	for (unsigned i = 0; i < PRESENTER_TIME_SOURCES; i++)
+		if (stats->flips_by_source[i] > 0)
+			json_object_set_new(object, presenter_time_source_name((enum presenter_time_source)i),
+								count_json(stats->flips_by_source[i]));
+	return object;
+}
+
 static double displayed_hz(const struct stats *stats)
 {
 	return stats->active_ns ? (double)stats->displayed_frames * 1e9 / (double)stats->active_ns : 0.0;
@@ -143,6 +154,7 @@ json_t *stats_json(const struct stats *stats)
 	json_object_set_new(object, "engine_ms", spread_json(&stats->engine_ms));
 	json_object_set_new(object, "submit_to_flip_ms", spread_json(&stats->submit_to_flip_ms));
 	json_object_set_new(object, "flip_error_ms", spread_json(&stats->flip_error_ms));
+	json_object_set_new(object, "flip_time_sources", time_sources_json(stats));
 	json_object_set_new(object, "passes", names_json(stats->passes, stats->pass_count));
 	json_object_set_new(object, "left_out", names_json(stats->left_out, stats->left_out_count));
 	return object;

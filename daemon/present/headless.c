@@ -40,7 +40,7 @@ struct headless {
 /* Handles vblank next_vblank; with the lock. */
 static struct presenter_flip show_next(struct headless *self, uint64_t now_ns)
 {
-	struct presenter_flip flip = {.flip_ns = now_ns};
+	struct presenter_flip flip = {.flip_ns = now_ns, .time_source = PRESENTER_TIME_TIMER};
 	const uint64_t newest = grid_at_or_after(&self->grid, now_ns + 1) - 1;
 
 	if (newest > self->next_vblank + SKIP_AFTER) {
@@ -132,9 +132,9 @@ static void headless_destroy(struct presenter *presenter)
 	free(self);
 }
 
-static const struct grid *headless_get_grid(const struct presenter *presenter)
+static struct grid headless_get_grid(struct presenter *presenter)
 {
-	return &((const struct headless *)presenter)->grid;
+	return self_of(presenter)->grid;
 }
 
 static int headless_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)

@@ -8,10 +8,13 @@
 
 #define NAME_BYTES 32
 
-static const struct presenter_impl *const impls[] = {&presenter_headless, NULL};
+static const struct presenter_impl *const impls[] = {&presenter_headless, &presenter_glfw, &presenter_kms, NULL};
 
-/* All that the project knows of, so that "not built" and "unknown" are told apart. */
-static const char *const known[] = {"headless", "glfw", "kms"};
+const char *presenter_time_source_name(enum presenter_time_source source)
+{
+	static const char *const names[] = {"estimated", "timer", "display server", "kernel"};
+	return source < PRESENTER_TIME_SOURCES ? names[source] : "";
+}
 
 const struct presenter_impl *const *presenter_impls(void)
 {
@@ -40,13 +43,19 @@ static const struct presenter_impl *find(const char *name)
 
 static int explain_missing(const char *name, struct error *error)
 {
-	for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
-		if (strcmp(known[i], name) == 0)
-			return error_set(error, -EINVAL,
-							 "present: %s is not built into this pursuitd; use headless, or build with "
-							 "-Dpresenters=headless,%s",
-							 name, name);
+	if (find(name))
+		return error_set(
+			error, -EINVAL,
+			"present: %s is not built into this pursuitd; use headless, or install what it needs and build "
+			"again with -D%s=enabled",
+			name, name);
 	return error_set(error, -EINVAL, "present: there is no presenter \"%s\"; there are headless, glfw and kms", name);
+}
+
+static bool is_built(const char *name)
+{
+	const struct presenter_impl *impl = find(name);
+	return impl && impl->create;
 }
 
 int presenter_check_list(const char *list, struct error *error)
@@ -55,7 +64,7 @@ int presenter_check_list(const char *list, struct error *error)
 	bool any = false;
 	while (next_name(&list, name)) {
 		any = true;
-		if (!find(name))
+		if (!is_built(name))
 			return explain_missing(name, error);
 	}
 	return any ? 0 : error_set(error, -EINVAL, "present: the list is empty; there are headless, glfw and kms");
@@ -66,11 +75,10 @@ struct presenter *presenter_create(const char *list, const struct presenter_para
 	char name[NAME_BYTES];
 	error_set(error, -EINVAL, "present: the list is empty");
 	while (next_name(&list, name)) {
-		const struct presenter_impl *impl = find(name);
-		struct presenter *presenter = impl ? impl->create(params, error) : NULL;
+		struct presenter *presenter = is_built(name) ? find(name)->create(params, error) : NULL;
 		if (presenter)
 			return presenter;
-		if (!impl)
+		if (!is_built(name))
 			explain_missing(name, error);
 		log_warning(params->log, "%s", error->text);
 	}

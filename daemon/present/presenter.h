@@ -13,8 +13,11 @@
  *   group: a number that rises with every real frame. A real frame, its
  *          in-betweens and its standby picture have the same.
  *
- * Threads: every function is called on the render thread. flip() of the events
- * is called on a thread of the presenter's choice, never with a lock held.
+ * Threads: create, destroy, get_event_fd, process_events and toggle_fullscreen
+ * are called on main, where nothing may wait for a display; all others on the
+ * render thread, only between create and destroy. Events (flip, lost, key) come
+ * on a thread of the presenter's choice, never with a lock held, and none comes
+ * once destroy has returned.
  */
 #ifndef PURSUIT_PRESENTER_H
 #define PURSUIT_PRESENTER_H
@@ -43,11 +46,24 @@ enum presenter_shown {
 	PRESENTER_KEPT,    /* nothing was queued: the same picture as before */
 };
 
+/* Where flip_ns comes from. */
+enum presenter_time_source {
+	PRESENTER_TIME_ESTIMATED = 0,  /* when the call that shows a picture came back: later than the flip by an unknown time */
+	PRESENTER_TIME_TIMER,          /* there is no display: when the timer of the grid fired */
+	PRESENTER_TIME_DISPLAY_SERVER, /* told by the display server (OML_sync_control, presentation feedback) */
+	PRESENTER_TIME_KERNEL,         /* the kernel's event of the page flip */
+	PRESENTER_TIME_SOURCES,
+};
+/* "estimated", "timer", "display server", "kernel". Static. */
+const char *presenter_time_source_name(enum presenter_time_source source);
+
 /* One vblank is over. */
 struct presenter_flip {
 	uint64_t vblank;
 	uint64_t target_ns; /* the vblank's time on the grid */
-	uint64_t flip_ns;   /* when it was handled */
+	uint64_t flip_ns;   /* when it was shown, as time_source knows it */
+	uint64_t sequence;  /* the display's own count of vblanks, 0 unknown */
+	enum presenter_time_source time_source;
 	uint64_t serial;    /* of the picture on display, 0 none */
 	uint64_t group;
 	enum presenter_shown shown;
@@ -55,18 +71,45 @@ struct presenter_flip {
 	uint32_t skipped;   /* vblanks just before this one that were not handled at all */
 };
 
+/* A key was pressed. */
+struct presenter_key {
+	uint32_t code;    /* Unicode code point of the letter without modifiers, lower case; or one of those below */
+	uint64_t time_ns; /* when the presenter saw it */
+};
+#define PRESENTER_KEY_ESCAPE 0x1bu
+#define PRESENTER_KEY_F1     0x110001u /* beyond Unicode */
+#define PRESENTER_KEY_CLOSE  0x110100u /* the window's close button */
+
+/* What presenters with a display want to know; each takes what concerns it. Zeroed: the defaults. */
+struct presenter_options {
+	const char *monitor;    /* name or number; NULL or "": the primary one */
+	bool fullscreen;
+	uint32_t width, height; /* of a window; 0: as the first picture */
+	const char *connector;  /* NULL or "": the first that is connected */
+	const char *mode;       /* "1920x1080@120"; NULL or "": by the refresh rate */
+	const char *device;     /* NULL or "": the first with a display */
+	const char *title;      /* of a window; NULL: "Pursuit" */
+};
+
 struct presenter_params {
 	struct clock *clock;
 	const struct log *log;
 	uint64_t refresh_numerator; /* wished for; a display of its own rate may differ */
 	uint64_t refresh_denominator;
+	struct presenter_options options; /* strings live as long as the presenter */
 	void (*flip)(void *data, const struct presenter_flip *flip);
+	/*
+	 * The display is gone for good and shows nothing any more; said once. Calls after it do nothing and succeed, or
+	 * return an error. The user destroys the presenter soon.
+	 */
+	void (*lost)(void *data, const char *sentence);
+	void (*key)(void *data, const struct presenter_key *key);
 	void *data;
 };
 
 struct presenter;
 
-/* All functions are mandatory. */
+/* All functions are mandatory unless said otherwise; a presenter that was not built in has none (a stub). */
 struct presenter_impl {
 	const char *name;
 	const char *description;
@@ -74,10 +117,11 @@ struct presenter_impl {
 	struct presenter *(*create)(const struct presenter_params *params, struct error *error);
 	void (*destroy)(struct presenter *presenter);
 	/*
-	 * The grid that vblanks are counted on. A fixed rate is the special case of {earliest next flip, latest next
-	 * flip, grain}; a display of variable rate will add these.
+	 * The grid that vblanks are counted on, as it is known now: its rate and phase may follow the display's, while
+	 * the numbers of vblanks go on. Asked again after each flip event. A fixed rate is the special case of {earliest
+	 * next flip, latest next flip, grain}; a display of variable rate will add these.
 	 */
-	const struct grid *(*get_grid)(const struct presenter *presenter);
+	struct grid (*get_grid)(struct presenter *presenter);
 	/* A free picture to draw into; never waits. -EBUSY: all are queued or shown; -ENOMEM. */
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/* Gives a picture back undrawn. */
@@ -94,6 +138,14 @@ struct presenter_impl {
 	void (*clear_standby)(struct presenter *presenter);
 	/* The picture stays, no vblank is reported until the next present(). */
 	void (*pause)(struct presenter *presenter);
+	/*
+	 * Optional, both or none: a descriptor that is readable when process_events() has something to do, which may
+	 * call key() and lost(). It never waits.
+	 */
+	int (*get_event_fd)(struct presenter *presenter);
+	void (*process_events)(struct presenter *presenter);
+	/* Optional: between window and full screen. */
+	void (*toggle_fullscreen)(struct presenter *presenter);
 };
 
 /* First member of every presenter. */
@@ -101,7 +153,7 @@ struct presenter {
 	const struct presenter_impl *impl;
 };
 
-/* Presenters that were built in, ended by NULL, best first. */
+/* All presenters that the project knows, ended by NULL; those without create() were not built in. */
 const struct presenter_impl *const *presenter_impls(void);
 
 /*
@@ -115,5 +167,7 @@ struct presenter *presenter_create(const char *list, const struct presenter_para
 void presenter_destroy(struct presenter **presenter);
 
 extern const struct presenter_impl presenter_headless;
+extern const struct presenter_impl presenter_glfw;
+extern const struct presenter_impl presenter_kms;
 
 #endif

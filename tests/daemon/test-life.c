@@ -38,7 +38,6 @@ static void test_usage(void)
 	} wrong[] = {
 		{"--methd", "x", "--methd: there is no such option; did you mean --method?"},
 		{"--method", "magic", "method: there is no method \"magic\"; there are "},
-		{"--present", "kms", "present: kms is not built into this pursuitd; use headless, or build with "},
 		{"--present", "hologram", "present: there is no presenter \"hologram\""},
 		{"--refresh", "5000", "refresh: 5000 is above 1000 Hz"},
 		{"--cell", NULL, "--cell needs a value"},

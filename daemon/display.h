@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The display of an output over its whole life: a presenter is made of the
+ * first in the list that works and given to the user; when it is lost it is
+ * taken away, destroyed, and the list is tried again, with a growing delay.
+ *
+ * Lives on main, since windows demand that; what other threads may call says so.
+ */
+#ifndef PURSUIT_DISPLAY_H
+#define PURSUIT_DISPLAY_H
+
+#include "daemon/clock.h"
+#include "daemon/error.h"
+#include "daemon/log.h"
+#include "daemon/loop.h"
+#include "daemon/options.h"
+#include "daemon/present/presenter.h"
+
+struct display;
+
+struct display_params {
+	struct loop *loop;
+	const struct log *log;
+	struct clock *clock;
+	const struct settings *settings; /* must live as long */
+	/* On a thread of the presenter. */
+	void (*flip)(void *data, const struct presenter_flip *flip);
+	void (*key)(void *data, const struct presenter_key *key);
+	/*
+	 * On main: this presenter from now on, NULL none. It stays valid until NULL was said and the user has answered
+	 * with display_let_go().
+	 */
+	void (*change)(void *data, struct presenter *presenter);
+	void *data;
+};
+
+/* Makes the first presenter; change() is called before it returns. NULL with a sentence. */
+struct display *display_create(const struct display_params *params, struct error *error);
+/* Nobody may use the presenter any more. NULL accepted. */
+void display_destroy(struct display **display);
+
+/* Any thread: the presenter that change(NULL) took away is not used any more. */
+void display_let_go(struct display *display);
+
+/* Between window and full screen, where the presenter has both. */
+void display_toggle_fullscreen(struct display *display);
+
+#endif
