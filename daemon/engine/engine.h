@@ -84,8 +84,8 @@ struct engine_begin_params {
 	uint64_t real_interval_ns; /* T; 0: as the frame says */
 };
 
-#define ENGINE_MAX_PASSES 12
-#define ENGINE_MAX_LEFT_OUT 12
+#define ENGINE_MAX_PASSES 16
+#define ENGINE_MAX_LEFT_OUT 16
 
 /* What ran for one real frame, from its engine_begin() to the next. */
 struct engine_report {

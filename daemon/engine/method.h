@@ -7,15 +7,16 @@
 
 #include "daemon/engine/state.h"
 
-/* The functions are mandatory and called with the context current, on the engine's thread. */
+/* The functions are mandatory and called after the executor was entered, on the engine's thread. */
 struct method {
 	const char *name;
 	const char *description; /* one line */
 	float tolerance;         /* of merged cells (merge.h), pixels */
+	bool keeps_previous;     /* wants PICTURE_PREVIOUS; undefined for the first frame and where the size changes */
 	/* Colour and UI are uploaded; the frame's planes are still there. 0 or a negative errno with a sentence. */
 	int (*begin)(struct engine *engine, struct error *error);
 	/* Makes the picture, without UI, and says where it is. */
-	int (*show)(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
+	int (*show)(struct engine *engine, enum engine_show show, double phase, enum picture_id *picture,
 				struct error *error);
 };
 
@@ -26,7 +27,7 @@ const struct method *method_find(const char *name, struct error *error);
 
 /* For methods that build upon `grid`. */
 int grid_begin(struct engine *engine, struct error *error);
-int grid_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
+int grid_show(struct engine *engine, enum engine_show show, double phase, enum picture_id *picture,
 			  struct error *error);
 
 #endif

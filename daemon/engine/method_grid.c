@@ -78,14 +78,13 @@ static bool depth_varies(const struct plan *plan)
 /* The triangles for the GPU: merged where that changes nothing that could be seen. */
 static int make_mesh(struct engine *engine, struct error *error)
 {
-	const struct gl *gl = engine_gl(engine);
 	engine->has_depth = depth_varies(&engine->plan);
 	/* Merging changes the drawing order. */
 	bool merge = engine->has_depth || !engine->plan.folded;
-	int result = warp_mesh_begin(&engine->mesh, gl, &engine->plan, merge ? engine->method->tolerance : -1.0f, error);
+	int result = warp_mesh_begin(&engine->mesh, &engine->plan, merge ? engine->method->tolerance : -1.0f, error);
 	if (result < 0)
 		return result;
-	return warp_mesh_sort_doubtful(&engine->mesh, gl, engine->params.blur_level, error);
+	return warp_mesh_sort_doubtful(&engine->mesh, engine->params.blur_level, error);
 }
 
 int grid_begin(struct engine *engine, struct error *error)
@@ -110,12 +109,12 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 {
 	bool tears = engine->params.blur != ENGINE_BLUR_OFF;
 	struct warp_mesh *mesh = &engine->mesh;
-	int result = warp_mesh_sort(mesh, engine_gl(engine), (float)phase, tears, !engine->has_depth, error);
+	int result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	/* Merged without a look at depths, since nothing folds at the last phase; but here it does. */
 	if (result == 0 && mesh->folds.count && !engine->plan.folded && mesh->count < engine->plan.index_count) {
-		result = warp_mesh_begin(mesh, engine_gl(engine), &engine->plan, -1.0f, error);
+		result = warp_mesh_begin(mesh, &engine->plan, -1.0f, error);
 		if (result == 0)
-			result = warp_mesh_sort(mesh, engine_gl(engine), (float)phase, tears, !engine->has_depth, error);
+			result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	}
 	if (result < 0 || (!mesh->torn.count && !mesh->folded_torn.count))
 		return result;
@@ -127,15 +126,14 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 	return pass_run(engine, PASS_PYRAMID, error);
 }
 
-int grid_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
-			  struct error *error)
+int grid_show(struct engine *engine, enum engine_show show, double phase, enum picture_id *picture, struct error *error)
 {
 	bool real = show == ENGINE_SHOW_REAL;
-	*picture = &engine->color;
+	*picture = PICTURE_ORIGINAL;
 	if (show == ENGINE_SHOW_PLAIN || !engine->moves)
 		return 0;
 	if (engine->compensated)
-		*picture = real ? &engine->real : &engine->between;
+		*picture = real ? PICTURE_REAL : PICTURE_BETWEEN;
 	if (real && fabs(phase) <= SAME_MOMENT)
 		return 0;
 	int result = sort_mesh(engine, phase, error);
@@ -144,7 +142,7 @@ int grid_show(struct engine *engine, enum engine_show show, double phase, const 
 	engine->job.picture = *picture;
 	engine->job.phase = phase;
 	result = pass_run(engine, PASS_WARP, error);
-	*picture = &engine->shown;
+	*picture = PICTURE_SHOWN;
 	return result;
 }
 

@@ -10,10 +10,10 @@ static int hold_begin(struct engine *engine, struct error *error)
 	return 0;
 }
 
-static int hold_show(struct engine *engine, enum engine_show show, double phase, const struct target **picture,
+static int hold_show(struct engine *engine, enum engine_show show, double phase, enum picture_id *picture,
 					 struct error *error)
 {
-	*picture = &engine->color;
+	*picture = PICTURE_ORIGINAL;
 	return 0;
 }
 

@@ -3,26 +3,29 @@
 
 #include "daemon/engine/pass.h"
 
+#include <errno.h>
 #include <string.h>
 
-static const struct pass *const passes[PASS_COUNT] = {
-	[PASS_ANALYSE] = &pass_analyse, [PASS_UPLOAD] = &pass_upload,
-	[PASS_PYRAMID] = &pass_pyramid, [PASS_COMPENSATE] = &pass_compensate,
-	[PASS_WARP] = &pass_warp,       [PASS_UI] = &pass_ui,
-	[PASS_READ] = &pass_read,
+static const char *const names[PASS_COUNT] = {
+	[PASS_ANALYSE] = "analyse", [PASS_UPLOAD] = "upload", [PASS_PYRAMID] = "pyramid", [PASS_COMPENSATE] = "compensate",
+	[PASS_WARP] = "warp",       [PASS_UI] = "ui",         [PASS_READ] = "read",
 };
 
 int pass_run(struct engine *engine, enum pass_id id, struct error *error)
 {
-	const struct pass *pass = passes[id];
-	const char *reason = pass->prepare(engine);
+	struct executor *executor = engine->executor;
+	const struct pass *pass = executor->ops->passes[id];
+	if (!pass)
+		return error_set(error, -ENOTSUP, "method %s needs \"%s\", which context %s does not have",
+						 engine->params.method, names[id], executor->info.context);
+	const char *reason = pass->prepare ? pass->prepare(engine) : NULL;
 	if (reason) {
-		report_leave_out(&engine->report, pass->name, reason);
+		report_leave_out(&engine->report, names[id], reason);
 		return 0;
 	}
-	timer_begin(&engine->timer, engine_gl(engine), &engine->report.passes[id], pass->on_cpu);
+	executor->ops->time_begin(executor, &engine->report.passes[id], pass->on_cpu);
 	int result = pass->run(engine, error);
-	timer_end(&engine->timer, engine_gl(engine));
+	executor->ops->time_end(executor);
 	return result;
 }
 
@@ -39,5 +42,5 @@ void report_begin(struct engine_report *report, uint64_t frame_id, const char *t
 {
 	*report = (struct engine_report){.frame_id = frame_id, .time_source = time_source, .pass_count = PASS_COUNT};
 	for (int i = 0; i < PASS_COUNT; i++)
-		report->passes[i].name = passes[i]->name;
+		report->passes[i].name = names[i];
 }

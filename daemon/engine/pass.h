@@ -1,26 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* The passes: one file each. A pass knows the engine's state and no other pass. */
+/* Running passes, and the report of what ran. */
 #ifndef PURSUIT_ENGINE_PASS_H
 #define PURSUIT_ENGINE_PASS_H
 
 #include "daemon/engine/state.h"
 
-/* Both functions are mandatory and called with the context current. */
-struct pass {
-	const char *name;
-	bool on_cpu; /* GL does nothing in it */
-	/* NULL if it has something to do, else why not (docs/method.md, 8). */
-	const char *(*prepare)(struct engine *engine);
-	/* 0 or a negative errno with a sentence. */
-	int (*run)(struct engine *engine, struct error *error);
-};
-
-extern const struct pass pass_analyse, pass_upload, pass_pyramid, pass_compensate, pass_warp, pass_ui, pass_read;
-
-/* Prepares, runs and times a pass. */
+/* Prepares, runs and times a pass of the engine's executor. 0, -ENOTSUP if it has none such, or the pass's error. */
 int pass_run(struct engine *engine, enum pass_id id, struct error *error);
+
+/* Depth and motion to the plan, on the CPU: the same for all executors. */
+extern const struct pass pass_analyse;
+
+/*
+ * Colour and UI as the display's code values, for the upload of any executor: finds the planes, checks and converts.
+ * Checks sizes, makes the converters ready and forgets the UI's bounds; *color and *ui: the planes' places in the
+ * header, -1 without UI. 0 or -EINVAL with a sentence.
+ */
+int planes_prepare(struct engine *engine, int *color, int *ui, struct error *error);
 
 /* Notes that something was left out; the first reason given for a name stays. */
 void report_leave_out(struct engine_report *report, const char *name, const char *reason);

@@ -3,11 +3,6 @@
 
 #include "daemon/engine/pass.h"
 
-static const char *prepare(struct engine *engine)
-{
-	return NULL;
-}
-
 static int run(struct engine *engine, struct error *error)
 {
 	struct plan_params params = {
@@ -21,4 +16,4 @@ static int run(struct engine *engine, struct error *error)
 	return plan_make(&engine->plan, engine->job.frame, &params, error);
 }
 
-const struct pass pass_analyse = {.name = "analyse", .on_cpu = true, .prepare = prepare, .run = run};
+const struct pass pass_analyse = {.on_cpu = true, .run = run};

@@ -5,7 +5,6 @@
 
 #include <errno.h>
 #include <math.h>
-#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -103,26 +102,6 @@ static bool reserve(struct warp_mesh *mesh, uint32_t count)
 	return true;
 }
 
-static void make_buffers(struct warp_mesh *mesh, const struct gl *gl)
-{
-	gl->GenVertexArrays(1, &mesh->array);
-	gl->GenBuffers(1, &mesh->vertices);
-	gl->GenBuffers(1, &mesh->indices);
-	gl->BindVertexArray(mesh->array);
-	gl->BindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
-	gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, mesh->indices);
-	GLsizei stride = sizeof(struct plan_vertex);
-	gl->VertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, stride,
-							(const void *)offsetof(struct plan_vertex, x));
-	gl->VertexAttribPointer(ATTRIBUTE_DISPLACEMENT, 2, GL_FLOAT, GL_FALSE, stride,
-							(const void *)offsetof(struct plan_vertex, ux));
-	gl->VertexAttribPointer(ATTRIBUTE_DEPTH, 1, GL_FLOAT, GL_FALSE, stride,
-							(const void *)offsetof(struct plan_vertex, z));
-	gl->EnableVertexAttribArray(ATTRIBUTE_POSITION);
-	gl->EnableVertexAttribArray(ATTRIBUTE_DISPLACEMENT);
-	gl->EnableVertexAttribArray(ATTRIBUTE_DEPTH);
-}
-
 static void measure_triangles(struct warp_mesh *mesh)
 {
 	for (uint32_t i = 0; i < mesh->count; i += 3) {
@@ -131,8 +110,7 @@ static void measure_triangles(struct warp_mesh *mesh)
 	}
 }
 
-int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, float tolerance,
-					struct error *error)
+int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct error *error)
 {
 	mesh->plan = plan;
 	if (!reserve(mesh, plan->index_count))
@@ -145,12 +123,7 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct pl
 	if (!mesh->count)
 		return error_set(error, -ENOMEM, "out of memory for %u cells", plan->index_count / 6);
 	measure_triangles(mesh);
-	if (!mesh->array)
-		make_buffers(mesh, gl);
-	GLsizeiptr size = (GLsizeiptr)((size_t)plan->columns * plan->rows * sizeof(*plan->vertices));
-	gl->BindBuffer(GL_ARRAY_BUFFER, mesh->vertices);
-	gl->BufferData(GL_ARRAY_BUFFER, size, plan->vertices, GL_STREAM_DRAW);
-	mesh->bytes = (uint64_t)size;
+	mesh->begun++;
 	return 0;
 }
 
@@ -167,15 +140,19 @@ static struct warp_list collect(struct warp_mesh *mesh, uint32_t first, unsigned
 	return list;
 }
 
-static void send(struct warp_mesh *mesh, const struct gl *gl, uint32_t count)
+static uint32_t end_of(struct warp_list list)
 {
-	GLsizeiptr size = (GLsizeiptr)((size_t)count * sizeof(uint32_t));
-	gl->BindVertexArray(mesh->array);
-	gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, size, mesh->lists, GL_STREAM_DRAW);
-	mesh->bytes += (uint64_t)size;
+	return list.first + list.count;
 }
 
-int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_t level, struct error *error)
+/* The lists are complete: they end with this one. */
+static void close_lists(struct warp_mesh *mesh, struct warp_list last)
+{
+	mesh->list_count = end_of(last);
+	mesh->sorted++;
+}
+
+int warp_mesh_sort_doubtful(struct warp_mesh *mesh, uint32_t level, struct error *error)
 {
 	const struct plan *plan = mesh->plan;
 	float phase = plan->last_phase;
@@ -197,7 +174,7 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_
 		mesh->kinds[i / 3] = map.determinant > 0.0f ? KIND_TORN : KIND_HIDDEN;
 	}
 	mesh->doubtful = collect(mesh, 0, KIND_TORN | KIND_HIDDEN, KIND_TORN);
-	send(mesh, gl, mesh->doubtful.count);
+	close_lists(mesh, mesh->doubtful);
 	return 0;
 }
 
@@ -230,13 +207,7 @@ static void find_folds(struct warp_mesh *mesh, float phase)
 	}
 }
 
-static uint32_t end_of(struct warp_list list)
-{
-	return list.first + list.count;
-}
-
-int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, bool tears, bool keep_order,
-				   struct error *error)
+int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_order, struct error *error)
 {
 	const struct plan *plan = mesh->plan;
 	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE))
@@ -251,15 +222,12 @@ int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, boo
 	mesh->folded = collect(mesh, end_of(mesh->torn), keep_order ? KIND_FOLDED : all, KIND_FOLDED);
 	/* With the order kept these come twice: once in their place, once only to be counted. */
 	mesh->folded_torn = collect(mesh, end_of(mesh->folded), all, KIND_FOLDED | KIND_TORN);
-	send(mesh, gl, end_of(mesh->folded_torn));
+	close_lists(mesh, mesh->folded_torn);
 	return 0;
 }
 
-void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl)
+void warp_mesh_finish(struct warp_mesh *mesh)
 {
-	gl->DeleteVertexArrays(1, &mesh->array);
-	gl->DeleteBuffers(1, &mesh->vertices);
-	gl->DeleteBuffers(1, &mesh->indices);
 	merge_finish(&mesh->merge);
 	tiles_finish(&mesh->folds);
 	tiles_finish(&mesh->low);
@@ -269,13 +237,4 @@ void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl)
 	free(mesh->wildness);
 	free(mesh->kinds);
 	*mesh = (struct warp_mesh){0};
-}
-
-void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct warp_list list)
-{
-	if (!list.count)
-		return;
-	gl->BindVertexArray(mesh->array);
-	gl->DrawElements(GL_TRIANGLES, (GLsizei)list.count, GL_UNSIGNED_INT,
-					 (const void *)((size_t)list.first * sizeof(uint32_t)));
 }

@@ -2,10 +2,10 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * The plan's grid as GL buffers, and which of its triangles need what at a
- * phase. Triangles of a displaced grid whose border is fixed lie over each other
- * only where others turn over, so that depth and drawing order matter only there.
- * Buffers are orphaned and refilled, memory grows and stays.
+ * The plan's grid, and which of its triangles need what at a phase. Triangles
+ * of a displaced grid whose border is fixed lie over each other only where
+ * others turn over, so that depth and drawing order matter only there. Knows no
+ * executor; memory grows and stays.
  */
 #ifndef PURSUIT_ENGINE_WARP_MESH_H
 #define PURSUIT_ENGINE_WARP_MESH_H
@@ -13,19 +13,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "daemon/engine/gl.h"
 #include "daemon/engine/merge.h"
 #include "daemon/engine/plan.h"
 #include "daemon/engine/tiles.h"
 #include "daemon/error.h"
 
-/* Part of the index buffer; indices, not triangles. */
+/* Part of the mesh's lists; indices, not triangles. */
 struct warp_list {
 	uint32_t first, count;
 };
 
 struct warp_mesh {
-	GLuint array, vertices, indices;
 	const struct plan *plan;
 	struct merge merge;
 	struct tiles folds;  /* at the phase sorted for, where triangles may lie over each other */
@@ -35,39 +33,39 @@ struct warp_mesh {
 	uint32_t count;      /* indices of them */
 	float *wildness;     /* by triangle: squared norm of the displacement's gradient */
 	uint8_t *kinds;      /* by triangle: what it needs at the phase sorted for */
-	uint32_t *lists;     /* on their way to the index buffer */
+	uint32_t *lists;     /* of indices into the plan's vertices: all lists below, one after another */
+	uint32_t list_count; /* indices in use */
 	uint32_t capacity;   /* indices */
-	/* What warp_mesh_sort() and warp_mesh_sort_doubtful() found; the index buffer holds one or the other. */
+	uint64_t begun;      /* counts warp_mesh_begin(): the vertices are new */
+	uint64_t sorted;     /* counts the sorts: the lists are new */
+	/* What warp_mesh_sort() and warp_mesh_sort_doubtful() found; `lists` holds one or the other. */
 	struct warp_list plain;       /* neither torn nor over each other */
 	struct warp_list torn;        /* torn, not over each other */
 	struct warp_list folded;      /* perhaps over each other, in drawing order */
 	struct warp_list folded_torn; /* these among them that are torn; if `keep_order` they are in `folded` too */
 	bool keep_order;
 	struct warp_list doubtful;
-	uint64_t bytes; /* sent since warp_mesh_begin() */
 };
 
 /*
- * Takes the plan, which must stay until the next one, and sends its vertices. `tolerance`: pixels that a vertex may be
+ * Takes the plan, which must stay until the next one. `tolerance`: pixels that a vertex may be
  * off for cells to be merged; negative: none are. 0 or -ENOMEM with a sentence.
  */
-int warp_mesh_begin(struct warp_mesh *mesh, const struct gl *gl, const struct plan *plan, float tolerance,
-					struct error *error);
-void warp_mesh_finish(struct warp_mesh *mesh, const struct gl *gl);
+int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct error *error);
+void warp_mesh_finish(struct warp_mesh *mesh);
 
 /*
  * Fills `doubtful`: triangles with a blur weight, and marks in `low` and `levels` what they and torn ones need up to
  * the last phase; the spline over `level` reaches far. 0 or -ENOMEM with a sentence.
  */
-int warp_mesh_sort_doubtful(struct warp_mesh *mesh, const struct gl *gl, uint32_t level, struct error *error);
+int warp_mesh_sort_doubtful(struct warp_mesh *mesh, uint32_t level, struct error *error);
 
 /*
  * Fills the lists for a phase; without `tears` none is torn. `keep_order`: depths may be equal, so that what lies over
  * each other is drawn as one list. 0 or -ENOMEM with a sentence.
  */
-int warp_mesh_sort(struct warp_mesh *mesh, const struct gl *gl, float phase, bool tears, bool keep_order,
-				   struct error *error);
+int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_order, struct error *error);
 
-void warp_mesh_draw(const struct warp_mesh *mesh, const struct gl *gl, struct warp_list list);
+void warp_mesh_draw(const struct warp_mesh *mesh, struct warp_list list);
 
 #endif

@@ -80,7 +80,7 @@ def check_includes(top, path, text, breaches, behind):
         inside = path.startswith(("daemon/engine/", "tests/"))
         if ours.startswith("daemon/engine/") and not inside and ours not in ENGINE_FACES:
             breaches.append(f"{path}: reaches behind the engine's face: {ours}")
-        passes = re.compile(r"daemon/engine/pass_(\w+)\.[ch]$")
+        passes = re.compile(r"daemon/engine/(?:\w+/)?pass_(\w+)\.[ch]$")
         mine, theirs = passes.match(path), passes.match(ours)
         if mine and theirs and mine.group(1) != theirs.group(1):
             breaches.append(f"{path}: a pass includes another pass: {ours}")
@@ -118,17 +118,17 @@ def check(top):
 SPDX = "/* SPDX-License-Identifier: MIT */\n"
 GOOD = {
     "proto/wire.h": SPDX, "client/pursuit.h": SPDX, "client/scenes/scene.h": SPDX, "daemon/server.h": SPDX,
-    "daemon/engine/engine.h": SPDX, "daemon/engine/gl.h": SPDX, "daemon/engine/pass_warp.h": SPDX,
-    "daemon/engine/pass_blur.h": SPDX,
+    "daemon/engine/engine.h": SPDX, "daemon/engine/gl/gl.h": SPDX, "daemon/engine/gl/pass_warp.h": SPDX,
+    "daemon/engine/gl/pass_blur.h": SPDX,
     "daemon/cli/main.c": SPDX + '#include "client/pursuit.h"\n#include "daemon/engine/engine.h"\n',
 }
 BAD = [
     ("proto/a.h", SPDX + '#include "client/pursuit.h"\n', "may not include"),
     ("client/a.c", SPDX + '#include "daemon/server.h"\n', "may not include"),
     ("daemon/a.c", SPDX + '#include "client/pursuit.h"\n', "may not include"),
-    ("daemon/a.c", SPDX + '#include "daemon/engine/gl.h"\n', "reaches behind"),
+    ("daemon/a.c", SPDX + '#include "daemon/engine/gl/gl.h"\n', "reaches behind"),
     ("daemon/present/a.c", SPDX + '#include "daemon/engine/engine.h"\n', "may not include"),
-    ("daemon/engine/pass_warp.c", SPDX + '#include "pass_blur.h"\n', "a pass includes"),
+    ("daemon/engine/gl/pass_warp.c", SPDX + '#include "pass_blur.h"\n', "a pass includes"),
     ("daemon/engine/a.c", SPDX + '#include "daemon/server.h"\n', "may not include"),
     ("daemon/present/pacer.c", SPDX + "#include <time.h>\n", "pure arithmetic"),
     ("daemon/a.c", "int a;\n", "no SPDX"),

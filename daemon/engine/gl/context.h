@@ -5,14 +5,14 @@
  * A GL context without a window, with its table of functions. One file a kind;
  * a kind that is not built is a stub that says so.
  */
-#ifndef PURSUIT_ENGINE_CONTEXT_H
-#define PURSUIT_ENGINE_CONTEXT_H
+#ifndef PURSUIT_ENGINE_GL_CONTEXT_H
+#define PURSUIT_ENGINE_GL_CONTEXT_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "daemon/engine/engine.h"
-#include "daemon/engine/gl.h"
+#include "daemon/engine/gl/gl.h"
 #include "daemon/error.h"
 
 struct context;

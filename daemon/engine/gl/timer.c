@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/engine/timer.h"
+#include "daemon/engine/gl/timer.h"
 
-#include <time.h>
-
-uint64_t timer_now_ns(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
+#include "daemon/engine/now.h"
 
 void timer_init(struct timer *timer, const struct gl *gl, bool software, bool finish)
 {
@@ -38,7 +31,7 @@ void timer_begin(struct timer *timer, const struct gl *gl, struct engine_pass_re
 	if (timer->open_query)
 		gl->BeginQuery(GL_TIME_ELAPSED, timer->ids[timer->pending]);
 	else if (!timer->queries || on_cpu)
-		timer->began_ns = timer_now_ns();
+		timer->began_ns = now_ns();
 	else
 		timer->began_ns = 0;
 }
@@ -55,7 +48,7 @@ void timer_end(struct timer *timer, const struct gl *gl)
 		return;
 	if (timer->finish)
 		gl->Finish();
-	timer->open->ms += (double)(timer_now_ns() - timer->began_ns) * 1e-6;
+	timer->open->ms += (double)(now_ns() - timer->began_ns) * 1e-6;
 }
 
 void timer_collect(struct timer *timer, const struct gl *gl)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/engine/gl.h"
+#include "daemon/engine/gl/gl.h"
 
 #include <errno.h>
 #include <stdio.h>

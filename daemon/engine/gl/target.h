@@ -2,12 +2,12 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* Pictures on the GPU: 8-bit colour textures, each with a framebuffer. Row 0 is the top of the picture. */
-#ifndef PURSUIT_ENGINE_TARGET_H
-#define PURSUIT_ENGINE_TARGET_H
+#ifndef PURSUIT_ENGINE_GL_TARGET_H
+#define PURSUIT_ENGINE_GL_TARGET_H
 
 #include <stdint.h>
 
-#include "daemon/engine/gl.h"
+#include "daemon/engine/gl/gl.h"
 #include "daemon/error.h"
 
 struct target {

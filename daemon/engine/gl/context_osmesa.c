@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* OSMesa is loaded at run time, since newer Mesa no longer ships it. */
-#include "daemon/engine/context.h"
+#include "daemon/engine/gl/context.h"
 
 #include <dlfcn.h>
 #include <errno.h>

@@ -2,18 +2,13 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* Pixels back to memory, rows top to bottom as they lie: nothing is flipped. */
-#include "daemon/engine/pass.h"
-
-static const char *prepare(struct engine *engine)
-{
-	return NULL;
-}
+#include "daemon/engine/gl/executor_gl.h"
 
 static int run(struct engine *engine, struct error *error)
 {
-	const struct gl *gl = engine_gl(engine);
+	const struct gl *gl = table_of(engine);
 	const struct engine_image *image = engine->job.image;
-	const struct target *picture = engine->job.picture;
+	const struct target *picture = picture_of(engine, engine->job.picture);
 	gl->BindFramebuffer(GL_READ_FRAMEBUFFER, picture->framebuffer);
 	gl->PixelStorei(GL_PACK_ROW_LENGTH, (GLint)(image->stride / 4));
 	gl->ReadPixels(0, 0, (GLsizei)picture->width, (GLsizei)picture->height, gl->pixel_format, gl->pixel_type,
@@ -22,4 +17,4 @@ static int run(struct engine *engine, struct error *error)
 	return 0;
 }
 
-const struct pass pass_read = {.name = "read", .prepare = prepare, .run = run};
+const struct pass gl_pass_read = {.run = run};

@@ -5,8 +5,8 @@
  * The table of GL functions: one a context, filled by that context's own
  * lookup. No GL library is linked; every call of the engine goes through it.
  */
-#ifndef PURSUIT_ENGINE_GL_H
-#define PURSUIT_ENGINE_GL_H
+#ifndef PURSUIT_ENGINE_GL_GL_H
+#define PURSUIT_ENGINE_GL_GL_H
 
 #include <stdbool.h>
 

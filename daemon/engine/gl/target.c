@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/engine/target.h"
+#include "daemon/engine/gl/target.h"
 
 #include <errno.h>
 

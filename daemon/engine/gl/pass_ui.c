@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* The UI layer over everything else, in code values, never warped or blurred. */
-#include "daemon/engine/pass.h"
+#include "daemon/engine/gl/executor_gl.h"
 
 #include <errno.h>
 
@@ -10,25 +10,26 @@
 
 static const char *prepare(struct engine *engine)
 {
-	return engine->ui_bounds.left < engine->ui_bounds.right ? NULL : "absent";
+	return bounds_empty(&engine->ui_bounds) ? "absent" : NULL;
 }
 
 static int run(struct engine *engine, struct error *error)
 {
-	const struct gl *gl = engine_gl(engine);
-	if (engine->job.picture != &engine->shown) {
-		int result = target_resize(&engine->shown, gl, engine->color.width, engine->color.height, error);
+	const struct gl *gl = table_of(engine);
+	struct target *shown = picture_of(engine, PICTURE_SHOWN);
+	if (engine->job.picture != PICTURE_SHOWN) {
+		int result = target_resize(shown, gl, engine->width, engine->height, error);
 		if (result < 0)
 			return result;
-		target_copy(engine->job.picture, &engine->shown, gl);
+		target_copy(picture_of(engine, engine->job.picture), shown, gl);
 	}
-	if (!program_use(&engine->programs, gl, PROGRAM_UI, 0, error))
+	if (!program_use(&gl_of(engine)->programs, gl, PROGRAM_UI, 0, error))
 		return -EIO;
 	const struct bounds *bounds = &engine->ui_bounds;
-	target_draw_to(&engine->shown, gl);
+	target_draw_to(shown, gl);
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
-	gl->BindTexture(GL_TEXTURE_2D, engine->ui.texture);
-	gl->BindVertexArray(engine->no_attributes);
+	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, PICTURE_UI)->texture);
+	gl->BindVertexArray(gl_of(engine)->no_attributes);
 	gl->Enable(GL_SCISSOR_TEST);
 	gl->Scissor((GLint)bounds->left, (GLint)bounds->top, (GLsizei)(bounds->right - bounds->left),
 				(GLsizei)(bounds->bottom - bounds->top));
@@ -36,8 +37,8 @@ static int run(struct engine *engine, struct error *error)
 	gl->DrawArrays(GL_TRIANGLES, 0, 6);
 	gl->Disable(GL_BLEND);
 	gl->Disable(GL_SCISSOR_TEST);
-	engine->job.picture = &engine->shown;
+	engine->job.picture = PICTURE_SHOWN;
 	return 0;
 }
 
-const struct pass pass_ui = {.name = "ui", .prepare = prepare, .run = run};
+const struct pass gl_pass_ui = {.prepare = prepare, .run = run};

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/engine/context.h"
+#include "daemon/engine/gl/context.h"
 
 #include <errno.h>
 

@@ -5,14 +5,14 @@
  * How long each pass takes: by timer queries on a GPU, else by the CPU clock.
  * A CPU renderer's queries tell nothing, since it works while others draw.
  */
-#ifndef PURSUIT_ENGINE_TIMER_H
-#define PURSUIT_ENGINE_TIMER_H
+#ifndef PURSUIT_ENGINE_GL_TIMER_H
+#define PURSUIT_ENGINE_GL_TIMER_H
 
 #include <stdbool.h>
 #include <stdint.h>
 
 #include "daemon/engine/engine.h"
-#include "daemon/engine/gl.h"
+#include "daemon/engine/gl/gl.h"
 
 #define TIMER_QUERIES 64
 
@@ -40,7 +40,5 @@ void timer_end(struct timer *timer, const struct gl *gl);
 void timer_collect(struct timer *timer, const struct gl *gl);
 /* Forgets queries under way. */
 void timer_drop(struct timer *timer);
-
-uint64_t timer_now_ns(void);
 
 #endif

@@ -2,10 +2,10 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* Shader programs: compiled when first used, kept until the engine ends. */
-#ifndef PURSUIT_ENGINE_PROGRAM_H
-#define PURSUIT_ENGINE_PROGRAM_H
+#ifndef PURSUIT_ENGINE_GL_PROGRAM_H
+#define PURSUIT_ENGINE_GL_PROGRAM_H
 
-#include "daemon/engine/gl.h"
+#include "daemon/engine/gl/gl.h"
 #include "daemon/error.h"
 
 enum program_kind {

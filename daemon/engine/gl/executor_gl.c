@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/gl/executor_gl.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+#include "daemon/engine/pass.h"
+
+static struct executor_gl *self(struct executor *executor)
+{
+	return (struct executor_gl *)executor;
+}
+
+static const struct gl *table(struct executor *executor)
+{
+	return &self(executor)->context->gl;
+}
+
+/* State that every draw relies on and none changes for good. */
+static void set_up(struct executor_gl *executor)
+{
+	const struct gl *gl = &executor->context->gl;
+	gl->GenVertexArrays(1, &executor->no_attributes);
+	gl->FrontFace(GL_CCW);
+	gl->CullFace(GL_BACK);
+	gl->DepthFunc(GL_LESS);
+	gl->BlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+static int enter(struct executor *executor, struct error *error)
+{
+	return context_enter(self(executor)->context, error);
+}
+
+static void delete_objects(struct executor_gl *executor)
+{
+	const struct gl *gl = &executor->context->gl;
+	for (int i = 0; i < PICTURE_COUNT; i++)
+		target_finish(&executor->pictures[i], gl);
+	for (int i = 0; i < MAX_LEVELS; i++)
+		target_finish(&executor->levels[i], gl);
+	gl->DeleteFramebuffers(1, &executor->both_framebuffer);
+	gl->DeleteFramebuffers(1, &executor->depth_framebuffer);
+	gl->DeleteRenderbuffers(1, &executor->depth);
+	gl->DeleteVertexArrays(1, &executor->no_attributes);
+	gl->DeleteVertexArrays(1, &executor->tile_array);
+	gl->DeleteBuffers(1, &executor->tile_vertices);
+	warp_buffers_finish(&executor->buffers, gl);
+	program_cache_finish(&executor->programs, gl);
+	timer_finish(&executor->timer, gl);
+}
+
+static void destroy(struct executor **executor)
+{
+	struct executor_gl *gone = self(*executor);
+	struct error error;
+	/* A lost context ignores the calls. */
+	context_enter(gone->context, &error);
+	delete_objects(gone);
+	context_destroy(&gone->context);
+	free(gone->staging);
+	free(gone->tile_numbers);
+	free(gone);
+	*executor = NULL;
+}
+
+static void keep_original(struct executor *executor)
+{
+	struct target *pictures = self(executor)->pictures, kept = pictures[PICTURE_ORIGINAL];
+	pictures[PICTURE_ORIGINAL] = pictures[PICTURE_PREVIOUS];
+	pictures[PICTURE_PREVIOUS] = kept;
+}
+
+static void flush(struct executor *executor)
+{
+	table(executor)->Flush();
+}
+
+static void time_begin(struct executor *executor, struct engine_pass_report *pass, bool on_cpu)
+{
+	timer_begin(&self(executor)->timer, table(executor), pass, on_cpu);
+}
+
+static void time_end(struct executor *executor)
+{
+	timer_end(&self(executor)->timer, table(executor));
+}
+
+static void collect_times(struct executor *executor)
+{
+	struct error error;
+	if (self(executor)->timer.pending && enter(executor, &error) == 0)
+		timer_collect(&self(executor)->timer, table(executor));
+}
+
+static void drop_times(struct executor *executor)
+{
+	timer_drop(&self(executor)->timer);
+}
+
+static const char *time_source(const struct executor *executor)
+{
+	return timer_source(&((const struct executor_gl *)executor)->timer);
+}
+
+static const struct executor_ops ops = {
+	.passes =
+		{
+			[PASS_ANALYSE] = &pass_analyse,
+			[PASS_UPLOAD] = &gl_pass_upload,
+			[PASS_PYRAMID] = &gl_pass_pyramid,
+			[PASS_COMPENSATE] = &gl_pass_compensate,
+			[PASS_WARP] = &gl_pass_warp,
+			[PASS_UI] = &gl_pass_ui,
+			[PASS_READ] = &gl_pass_read,
+		},
+	.enter = enter,
+	.destroy = destroy,
+	.keep_original = keep_original,
+	.flush = flush,
+	.time_begin = time_begin,
+	.time_end = time_end,
+	.collect_times = collect_times,
+	.drop_times = drop_times,
+	.time_source = time_source,
+};
+
+struct executor *executor_gl_create(const struct engine_params *params, struct error *error)
+{
+	struct executor_gl *executor = calloc(1, sizeof(*executor));
+	if (!executor) {
+		error_set(error, -ENOMEM, "out of memory");
+		return NULL;
+	}
+	executor->context = context_create(params, error);
+	if (!executor->context) {
+		free(executor);
+		return NULL;
+	}
+	executor->base.ops = &ops;
+	executor->base.info = executor->context->info;
+	executor->base.max_size = (uint32_t)executor->context->gl.max_size;
+	timer_init(&executor->timer, &executor->context->gl, executor->base.info.software, params->finish_each_pass);
+	set_up(executor);
+	return &executor->base;
+}
