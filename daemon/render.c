@@ -28,9 +28,7 @@ static void close_all_frames(struct render *render)
 
 static void start_pacer(struct render *render)
 {
-	const struct pacer_params params = {.refresh_numerator = render->grid.numerator,
-										.refresh_denominator = render->grid.denominator,
-										.epoch_ns = render->grid.epoch_ns};
+	const struct pacer_params params = {.grid = render->grid};
 	pacer_init(&render->pacer, &params);
 }
 
@@ -41,7 +39,8 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	render->presenter = presenter;
 	if (presenter)
 		render->grid = presenter->impl->get_grid(presenter);
-	showing_init(&render->showing, render->stats, grid_period_ns(&render->grid));
+	showing_init(&render->showing, render->stats);
+	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&render->grid);
 	start_pacer(render);
 	render->begun = render->report_due = render->standby_done = render->front_plain = false;
 	render->hold_until_ns = render->take_again_ns = 0;
@@ -58,10 +57,8 @@ bool render_follow_grid(struct render *render)
 	if (memcmp(&grid, &render->grid, sizeof(grid)) == 0)
 		return false;
 	render->grid = grid;
-	render->showing.period_ns = grid_period_ns(&grid);
-	render->pacer.params.refresh_numerator = grid.numerator;
-	render->pacer.params.refresh_denominator = grid.denominator;
-	render->pacer.params.epoch_ns = grid.epoch_ns;
+	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&grid);
+	pacer_set_grid(&render->pacer, &grid);
 	return true;
 }
 

@@ -6,11 +6,10 @@
 #include <math.h>
 #include <string.h>
 
-void showing_init(struct showing *showing, struct stats *stats, double period_ns)
+void showing_init(struct showing *showing, struct stats *stats)
 {
 	memset(showing, 0, sizeof(*showing));
 	showing->stats = stats;
-	showing->period_ns = period_ns;
 }
 
 void showing_finish(struct showing *showing)

@@ -58,10 +58,10 @@ struct showing {
 	uint64_t last_flip_ns; /* of the vblank before, if one was due then; otherwise 0 */
 	uint64_t next_submit_ns; /* hint that goes into reports */
 	bool pausing; /* an undecided vblank is no miss */
-	double period_ns;
+	double period_ns; /* between vblanks, as known now */
 };
 
-void showing_init(struct showing *showing, struct stats *stats, double period_ns);
+void showing_init(struct showing *showing, struct stats *stats);
 void showing_finish(struct showing *showing);
 
 /* A real frame was taken and will be shown as this group. Keeps a reference to the stream. */

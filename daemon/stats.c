@@ -151,6 +151,7 @@ json_t *stats_json(const struct stats *stats)
 	json_object_set_new(
 		object, "on_time",
 		json_real(stats->vblanks_due ? (double)stats->vblanks_on_time / (double)stats->vblanks_due : 0.0));
+	json_object_set_new(object, "vblank_ms", json_real(round(stats->vblank_ns) / 1e6));
 	json_object_set_new(object, "engine_ms", spread_json(&stats->engine_ms));
 	json_object_set_new(object, "submit_to_flip_ms", spread_json(&stats->submit_to_flip_ms));
 	json_object_set_new(object, "flip_error_ms", spread_json(&stats->flip_error_ms));

@@ -69,6 +69,7 @@ struct stats {
 	uint64_t vblanks_due;       /* vblanks at which a picture was due: all but pauses */
 	uint64_t vblanks_on_time;   /* of these, with the intended picture, ready before and shown before the next */
 	uint64_t late_flips;        /* the presenter itself was late by a vblank or more */
+	double vblank_ns;           /* the display's period as it is known now; 0 unknown */
 	uint64_t active_ns;         /* time over all vblanks due */
 	uint64_t engine_losses;
 	uint64_t unbalanced_vblanks; /* late in-betweens of boosted real frames: light that was missed, not carried */

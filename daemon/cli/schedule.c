@@ -174,9 +174,9 @@ int schedule_play(struct schedule *schedule, const struct recorded_frames *frame
 	if (play.next >= frames->count)
 		return error_set(error, -ENODATA, "no frame of this recording can be a real one: all are truth only");
 	pacer_init(&play.pacer, &(struct pacer_params){
-								.refresh_numerator = params->refresh.numerator,
-								.refresh_denominator = params->refresh.denominator,
-								.epoch_ns = frames->frames[play.next].time_ns,
+								.grid = {.numerator = params->refresh.numerator,
+										 .denominator = params->refresh.denominator,
+										 .epoch_ns = frames->frames[play.next].time_ns},
 								.fixed_delay = true,
 							});
 	uint64_t number = 0;
@@ -196,7 +196,7 @@ int schedule_play(struct schedule *schedule, const struct recorded_frames *frame
 			return result;
 	}
 	schedule->lost_real_frames = play.real_frames - schedule->beginning_count;
-	schedule->duration_ns = pacer_vblank_time(&play.pacer, number) - play.pacer.params.epoch_ns;
+	schedule->duration_ns = pacer_vblank_time(&play.pacer, number) - play.pacer.params.grid.epoch_ns;
 	return 0;
 }
 

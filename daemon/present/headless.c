@@ -103,7 +103,9 @@ static struct presenter *headless_create(const struct presenter_params *params, 
 	}
 	self->presenter.impl = &presenter_headless;
 	self->params = *params;
-	self->grid = (struct grid){params->refresh_numerator, params->refresh_denominator, clock_now(params->clock)};
+	self->grid = (struct grid){.numerator = params->refresh_numerator,
+							   .denominator = params->refresh_denominator,
+							   .epoch_ns = clock_now(params->clock)};
 	pthread_mutex_init(&self->lock, NULL);
 	pthread_cond_init(&self->wake, NULL);
 	const int result = pthread_create(&self->thread, NULL, run, self);

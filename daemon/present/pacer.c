@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daemon/present/grid.h"
-
 #define SECOND_NS INT64_C(1000000000)
 /* Intervals outside are pauses or nonsense and teach nothing. */
 #define INTERVAL_MIN_NS UINT64_C(500000)
@@ -28,10 +26,8 @@ void pacer_init(struct pacer *pacer, const struct pacer_params *params)
 {
 	memset(pacer, 0, sizeof(*pacer));
 	pacer->params = *params;
-	if (pacer->params.refresh_numerator == 0 || pacer->params.refresh_denominator == 0) {
-		pacer->params.refresh_numerator = 120;
-		pacer->params.refresh_denominator = 1;
-	}
+	pacer->params.grid = (struct grid){.numerator = 120, .denominator = 1};
+	pacer_set_grid(pacer, &params->grid);
 	if (!(pacer->params.max_phase > 0.0))
 		pacer->params.max_phase = 2.0;
 	pacer->delay_ns = params->fixed_delay ? params->delay_ns : 0;
@@ -39,28 +35,25 @@ void pacer_init(struct pacer *pacer, const struct pacer_params *params)
 
 /* ---- the grid ---- */
 
-static struct grid grid_of(const struct pacer *pacer)
+void pacer_set_grid(struct pacer *pacer, const struct grid *grid)
 {
-	const struct pacer_params *p = &pacer->params;
-	return (struct grid){p->refresh_numerator, p->refresh_denominator, p->epoch_ns};
+	if (grid->numerator != 0 && grid->denominator != 0)
+		pacer->params.grid = *grid;
 }
 
 uint64_t pacer_vblank_time(const struct pacer *pacer, uint64_t vblank)
 {
-	const struct grid grid = grid_of(pacer);
-	return grid_time(&grid, vblank);
+	return grid_time(&pacer->params.grid, vblank);
 }
 
 uint64_t pacer_vblank_at_or_after(const struct pacer *pacer, uint64_t time_ns)
 {
-	const struct grid grid = grid_of(pacer);
-	return grid_at_or_after(&grid, time_ns);
+	return grid_at_or_after(&pacer->params.grid, time_ns);
 }
 
 static double vblank_ns(const struct pacer *pacer)
 {
-	const struct grid grid = grid_of(pacer);
-	return grid_period_ns(&grid);
+	return grid_period_ns(&pacer->params.grid);
 }
 
 /* ---- history ---- */

@@ -5,9 +5,8 @@
  * The pacer: which picture belongs to which vblank. Pure arithmetic; time is
  * passed in, never read; knows no GL, no socket and no clock. One thread.
  *
- * Vblank k of a display that runs at numerator / denominator Hz is at
- *   epoch_ns + k x 1e9 x denominator / numerator, rounded down,
- * an absolute grid that does not drift (8,333,333 ns and the rest, not 8 ms).
+ * Vblanks lie on a grid (grid.h) that may change while their numbers go on, as
+ * a display's true period and phase are learned (vblanks.h).
  *
  * phase = (target vblank - real frame's time - display delay) / T. The display
  * delay is one constant that the pacer learns, so that a steady client gets a
@@ -29,17 +28,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "daemon/present/grid.h"
+
 #define PACER_HISTORY 32u
 /* A real frame's first showing is plain up to this |phase|. */
 #define PACER_PLAIN_PHASE 0.05
 
 struct pacer_params {
-	uint64_t refresh_numerator;   /* Hz = numerator / denominator, 1 to 1000 Hz */
-	uint64_t refresh_denominator;
-	uint64_t epoch_ns;            /* of vblank 0 */
-	bool fixed_delay;             /* replay: the display delay is delay_ns and is not learned */
+	struct grid grid; /* 1 to 1000 Hz; zeroed: 120 Hz, vblank 0 at 0 */
+	bool fixed_delay; /* replay: the display delay is delay_ns and is not learned */
 	int64_t delay_ns;
-	double max_phase;             /* beyond it nothing is extrapolated; 0: 2 */
+	double max_phase; /* beyond it nothing is extrapolated; 0: 2 */
 };
 
 /* The real frame that the pacer was told of last. */
@@ -83,6 +82,9 @@ struct pacer {
 };
 
 void pacer_init(struct pacer *pacer, const struct pacer_params *params);
+
+/* What is known of the display's vblanks now; their numbers go on. Ignored if it has no rate. */
+void pacer_set_grid(struct pacer *pacer, const struct grid *grid);
 
 /* Time of vblank k, and the first vblank at or after a time. Exact for 2^63 ns. */
 uint64_t pacer_vblank_time(const struct pacer *pacer, uint64_t vblank);

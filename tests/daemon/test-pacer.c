@@ -62,7 +62,7 @@ static void count(struct simulation *s, const struct pacer_decision *d, uint64_t
 static void simulate(struct simulation *s)
 {
 	const struct pacer_params params = {
-		.refresh_numerator = s->refresh[0], .refresh_denominator = s->refresh[1], .epoch_ns = 1000000000u + 3000000u};
+		.grid = {.numerator = s->refresh[0], .denominator = s->refresh[1], .epoch_ns = 1000000000u + 3000000u}};
 	uint64_t next = 0, first = 0, last_n = 0;
 	double arrival = 5.0, before = 0;
 	pacer_init(&s->pacer, &params);
@@ -93,15 +93,16 @@ static void test_grid(void)
 	static const uint64_t rates[][2] = {{120, 1}, {120000, 1001}, {1439, 10}, {1, 1}, {1000, 1}, {60000, 1001}};
 	for (size_t i = 0; i < sizeof(rates) / sizeof(rates[0]); i++) {
 		struct pacer pacer;
-		const struct pacer_params params = {rates[i][0], rates[i][1], UINT64_C(5000000000000), false, 0, 0};
+		const struct pacer_params params = {
+			.grid = {.numerator = rates[i][0], .denominator = rates[i][1], .epoch_ns = UINT64_C(5000000000000)}};
 		pacer_init(&pacer, &params);
-		CHECK_INT(pacer_vblank_time(&pacer, 0), params.epoch_ns);
+		CHECK_INT(pacer_vblank_time(&pacer, 0), params.grid.epoch_ns);
 		CHECK_INT(pacer_vblank_at_or_after(&pacer, 0), 0);
-		CHECK_INT(pacer_vblank_at_or_after(&pacer, params.epoch_ns), 0);
+		CHECK_INT(pacer_vblank_at_or_after(&pacer, params.grid.epoch_ns), 0);
 		for (uint64_t k = 1; k < UINT64_C(1) << 33; k = k * 3 + 1) {
 			const uint64_t t = pacer_vblank_time(&pacer, k);
 			const long double exact = (long double)k * 1e9L * (long double)rates[i][1] / (long double)rates[i][0];
-			const long double off = exact - (long double)(t - params.epoch_ns);
+			const long double off = exact - (long double)(t - params.grid.epoch_ns);
 			if (k < UINT64_C(1) << 30)
 				CHECK(off > -1e-3L && off < 1.001L);
 			CHECK_INT(pacer_vblank_at_or_after(&pacer, t), k);
@@ -114,7 +115,7 @@ static void test_grid(void)
 static void test_grid_of_120(void)
 {
 	struct pacer pacer;
-	const struct pacer_params params = {.refresh_numerator = 120, .refresh_denominator = 1};
+	const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}};
 	pacer_init(&pacer, &params);
 	CHECK_INT(pacer_vblank_time(&pacer, 1), 8333333);
 	CHECK_INT(pacer_vblank_time(&pacer, 2), 16666666);
@@ -221,7 +222,7 @@ static void feed(struct pacer *pacer, uint64_t id, uint64_t time_ns)
 static void test_start_and_pause(void)
 {
 	struct pacer pacer;
-	const struct pacer_params params = {.refresh_numerator = 120, .refresh_denominator = 1};
+	const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}};
 	struct pacer_decision d;
 	pacer_init(&pacer, &params);
 	CHECK_INT(pacer_decide(&pacer, 0).show, PACER_NOTHING);
@@ -251,7 +252,7 @@ static void test_start_and_pause(void)
 static void test_newest_wins_and_missed(void)
 {
 	struct pacer pacer;
-	const struct pacer_params params = {.refresh_numerator = 120, .refresh_denominator = 1};
+	const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}};
 	pacer_init(&pacer, &params);
 	feed(&pacer, 1, 1000000);
 	feed(&pacer, 2, 17666666);
@@ -275,7 +276,7 @@ static void test_newest_wins_and_missed(void)
 static void test_fixed_delay(void)
 {
 	struct pacer pacer;
-	const struct pacer_params params = {.refresh_numerator = 120, .refresh_denominator = 1, .fixed_delay = true};
+	const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}, .fixed_delay = true};
 	pacer_init(&pacer, &params);
 	for (uint64_t i = 0; i < 100; i++) {
 		feed(&pacer, i + 1, i * 25000000 + (i == 0));
@@ -295,7 +296,7 @@ static void test_fixed_delay(void)
 static void test_slower_client_moves_the_delay_slowly(void)
 {
 	struct pacer pacer;
-	const struct pacer_params params = {.refresh_numerator = 120, .refresh_denominator = 1};
+	const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}};
 	pacer_init(&pacer, &params);
 	uint64_t vblank = 0, id = 0;
 	double before = -1, fastest = 0;
@@ -318,7 +319,7 @@ static void test_nonsense(void)
 {
 	static const uint64_t times[] = {0, 1, UINT64_MAX, INT64_MAX, (uint64_t)INT64_MAX + 1, 5, 1000000000, 3};
 	struct pacer pacer;
-	const struct pacer_params params = {.refresh_numerator = 1439, .refresh_denominator = 10, .epoch_ns = 7};
+	const struct pacer_params params = {.grid = {.numerator = 1439, .denominator = 10, .epoch_ns = 7}};
 	pacer_init(&pacer, &params);
 	for (uint64_t i = 0; i < 4000; i++) {
 		random_unit();

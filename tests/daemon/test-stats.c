@@ -69,7 +69,8 @@ static void test_figures(void)
 	struct pursuit_shm_control *control = calloc(1, sizeof(*control));
 	struct stream stream = {.references = 100, .control = control};
 	memset(&stats, 0, sizeof(stats));
-	showing_init(&showing, &stats, (double)PERIOD);
+	showing_init(&showing, &stats);
+	showing.period_ns = (double)PERIOD;
 	for (uint64_t i = 1; i <= 30; i++) {
 		const uint64_t vblank = 100 + 2 * i;
 		const struct frame frame = {.header = {.frame_id = i, .submit_ns = vblank * PERIOD - 5000000},
