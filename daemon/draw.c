@@ -254,7 +254,7 @@ static int queue_real(struct render *render, const struct presenter_image *image
 		late = true;
 		showing_plan(&render->showing, *vblank, SHOWING_REAL);
 		pacer_missed(&render->pacer, decision);
-		*vblank = grid_at_or_after(&render->grid, clock_now(render->clock) + 1);
+		*vblank = render_first_vblank(render);
 		const double phase = decision->phase;
 		*decision = pacer_decide(&render->pacer, *vblank);
 		decision->phase = phase;

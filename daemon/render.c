@@ -37,8 +37,10 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	close_all_frames(render);
 	showing_finish(&render->showing);
 	render->presenter = presenter;
-	if (presenter)
+	if (presenter) {
 		render->grid = presenter->impl->get_grid(presenter);
+		render->lead_ns = presenter->impl->get_lead(presenter);
+	}
 	showing_init(&render->showing, render->stats);
 	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&render->grid);
 	start_pacer(render);
@@ -54,6 +56,7 @@ bool render_follow_grid(struct render *render)
 	if (!render->presenter)
 		return false;
 	const struct grid grid = render->presenter->impl->get_grid(render->presenter);
+	render->lead_ns = render->presenter->impl->get_lead(render->presenter);
 	if (memcmp(&grid, &render->grid, sizeof(grid)) == 0)
 		return false;
 	render->grid = grid;
@@ -93,14 +96,20 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 		showing_flip(&render->showing, flip);
 }
 
-static uint64_t estimate(const struct cost *cost)
+/* From now to a picture that is there as early as the presenter wants it. */
+static uint64_t estimate(const struct render *render, const struct cost *cost)
 {
-	return cost->count ? cost->safe_ns : FIRST_COST_NS;
+	return (cost->count ? cost->safe_ns : FIRST_COST_NS) + render->lead_ns;
+}
+
+uint64_t render_first_vblank(const struct render *render)
+{
+	return grid_at_or_after(&render->grid, clock_now(render->clock) + render->lead_ns + 1);
 }
 
 uint64_t render_real_cost(const struct render *render)
 {
-	return estimate(&render->real_cost) + render->margin_ns;
+	return estimate(render, &render->real_cost) + render->margin_ns;
 }
 
 static uint64_t before(uint64_t time_ns, uint64_t span_ns)
@@ -122,7 +131,7 @@ static uint64_t later_of(uint64_t a, uint64_t b)
 /* Vblanks that went by undecided were missed, unless nothing was due; the flip events count them. */
 static void skip_passed(struct render *render, uint64_t now_ns)
 {
-	const uint64_t first = grid_at_or_after(&render->grid, now_ns + 1);
+	const uint64_t first = grid_at_or_after(&render->grid, now_ns + render->lead_ns + 1);
 	if (render->pause_vblanks > 0 && !render->paused && first - render->next_vblank < SHOWING_VBLANKS)
 		render_plan_pause_until(render, first);
 	if (render->next_vblank < first)
@@ -154,7 +163,7 @@ static uint64_t real_start(struct render *render, uint64_t now_ns)
 /* A vblank before the real frame's lacks its in-between, and drawing that does not cost the real frame its vblank. */
 static bool fits_before_real(const struct render *render, uint64_t now_ns)
 {
-	const uint64_t real = render_real_cost(render), between = estimate(&render->between_cost);
+	const uint64_t real = render_real_cost(render), between = estimate(render, &render->between_cost);
 	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + real);
 	return render->begun && render->pause_vblanks == 0 && render->next_vblank < vblank &&
 		   now_ns + between <= grid_time(&render->grid, render->next_vblank) &&
@@ -206,7 +215,7 @@ static uint64_t wind_down(struct render *render, uint64_t now_ns)
 static uint64_t between_start(const struct render *render)
 {
 	const uint64_t vblank = render->next_vblank, time_ns = grid_time(&render->grid, vblank);
-	const uint64_t costs = later_of(render_real_cost(render), estimate(&render->between_cost));
+	const uint64_t costs = later_of(render_real_cost(render), estimate(render, &render->between_cost));
 	if (vblank >= render->real_vblank + render->n || render->pause_vblanks > 0)
 		return before(time_ns, costs);
 	/* Not further ahead than the presenter's queue holds. */
@@ -219,8 +228,8 @@ static bool standby_first(const struct render *render, uint64_t now_ns)
 	if (!render->boosted || render->standby_done || render->n < 2 || render->pause_vblanks > 0)
 		return false;
 	const uint64_t time_ns = grid_time(&render->grid, render->next_vblank);
-	const uint64_t plain = estimate(&render->plain_cost), between = estimate(&render->between_cost);
-	return now_ns + plain + between <= time_ns || now_ns + render->between_cost.usual_ns > time_ns ||
+	const uint64_t plain = estimate(render, &render->plain_cost), between = estimate(render, &render->between_cost);
+	return now_ns + plain + between <= time_ns || now_ns + render->between_cost.usual_ns + render->lead_ns > time_ns ||
 		   render->next_vblank > render->real_vblank + 1;
 }
 
@@ -249,7 +258,7 @@ static uint64_t show_between(struct render *render, uint64_t now_ns, bool urgent
 		showing_plan(&render->showing, vblank, SHOWING_IN_BETWEEN);
 		render->next_vblank++;
 		/* Late beyond doubt: not worth the time that the next one needs. */
-		if (now_ns + render->between_cost.usual_ns <= decision.target_ns)
+		if (now_ns + render->between_cost.usual_ns + render->lead_ns <= decision.target_ns)
 			draw_in_between(render, &decision, vblank);
 	}
 	return 0;

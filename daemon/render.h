@@ -45,6 +45,7 @@ struct render {
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
 	struct presenter *presenter; /* the display's; NULL: lost */
 	struct grid grid;
+	uint64_t lead_ns; /* that the presenter wants pictures before their vblank */
 	struct pacer pacer;
 	struct showing showing;
 	struct stats *stats; /* the owner's; only this thread touches them */
@@ -92,7 +93,10 @@ uint64_t render_step(struct render *render);
 /* Nothing is due at the vblanks from next_vblank to before this one. */
 void render_plan_pause_until(struct render *render, uint64_t vblank);
 
-/* What a real frame from its intake to its picture is expected to take. */
+/* The first vblank that a picture queued now can be shown at. */
+uint64_t render_first_vblank(const struct render *render);
+
+/* What a real frame from its intake to its picture, there as early as the presenter wants it, is expected to take. */
 uint64_t render_real_cost(const struct render *render);
 
 /* ---- draw.c ---- */

@@ -122,6 +122,8 @@ struct presenter_impl {
 	 * next flip, latest next flip, grain}; a display of variable rate will add these.
 	 */
 	struct grid (*get_grid)(struct presenter *presenter);
+	/* A picture must be queued so long before the time of its vblank; may grow and shrink. Asked with get_grid(). */
+	uint64_t (*get_lead)(struct presenter *presenter);
 	/* A free picture to draw into; never waits. -EBUSY: all are queued or shown; -ENOMEM. */
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/* Gives a picture back undrawn. */

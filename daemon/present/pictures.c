@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/present/pictures.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* A thread that slept so many vblanks too long skips them. */
+#define SKIP_AFTER 8u
+
+void pictures_init(struct pictures *pictures, const struct presenter_impl *impl, const struct presenter_params *params)
+{
+	pthread_condattr_t attributes;
+	memset(pictures, 0, sizeof(*pictures));
+	pictures->presenter.impl = impl;
+	pictures->params = *params;
+	pictures->grid.numerator = params->refresh_numerator;
+	pictures->grid.denominator = params->refresh_denominator;
+	pictures->grid.epoch_ns = clock_now(params->clock);
+	pthread_mutex_init(&pictures->lock, NULL);
+	pthread_condattr_init(&attributes);
+	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+	pthread_cond_init(&pictures->wake, &attributes);
+	pthread_condattr_destroy(&attributes);
+}
+
+void pictures_finish(struct pictures *pictures)
+{
+	for (uint32_t i = 0; i < FLIPS_IMAGES; i++)
+		free(pictures->memory[i].data);
+	pthread_cond_destroy(&pictures->wake);
+	pthread_mutex_destroy(&pictures->lock);
+}
+
+struct presenter_flip pictures_show_next(struct pictures *pictures, uint64_t now_ns)
+{
+	struct presenter_flip flip = {.flip_ns = now_ns};
+	const uint64_t newest = grid_at_or_after(&pictures->grid, now_ns + 1) - 1;
+
+	if (newest > pictures->next_vblank + SKIP_AFTER) {
+		flip.skipped = (uint32_t)(newest - pictures->next_vblank);
+		pictures->next_vblank = newest;
+	}
+	flip.vblank = pictures->next_vblank++;
+	flip.target_ns = grid_time(&pictures->grid, flip.vblank);
+	flip.shown = flips_show(&pictures->flips, flip.vblank);
+	if (pictures->flips.has_front) {
+		flip.serial = pictures->flips.front.serial;
+		flip.group = pictures->flips.front.group;
+	}
+	return flip;
+}
+
+static struct pictures *pictures_of(struct presenter *presenter)
+{
+	return (struct pictures *)presenter;
+}
+
+struct grid pictures_get_grid(struct presenter *presenter)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	pthread_mutex_lock(&pictures->lock);
+	const struct grid grid = pictures->grid;
+	pthread_mutex_unlock(&pictures->lock);
+	return grid;
+}
+
+uint64_t pictures_get_lead(struct presenter *presenter)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	pthread_mutex_lock(&pictures->lock);
+	const uint64_t lead_ns = pictures->lead_ns;
+	pthread_mutex_unlock(&pictures->lock);
+	return lead_ns;
+}
+
+int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	const size_t stride = ((size_t)width * 4 + 63) / 64 * 64, size = stride * height;
+
+	pthread_mutex_lock(&pictures->lock);
+	const int index = flips_acquire(&pictures->flips);
+	pthread_mutex_unlock(&pictures->lock);
+	if (index < 0)
+		return -EBUSY;
+	struct pictures_memory *memory = &pictures->memory[index];
+	if (memory->size != size) {
+		free(memory->data);
+		memory->data = aligned_alloc(64, size);
+		memory->size = memory->data ? size : 0;
+	}
+	*image = (struct presenter_image){memory->data, stride, width, height, (uint32_t)index};
+	pictures->shapes[index] = *image;
+	if (memory->data)
+		return 0;
+	pictures_release(presenter, image);
+	return -ENOMEM;
+}
+
+void pictures_release(struct presenter *presenter, const struct presenter_image *image)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	pthread_mutex_lock(&pictures->lock);
+	flips_release(&pictures->flips, image->index);
+	pthread_mutex_unlock(&pictures->lock);
+}
+
+int pictures_present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
+					 uint64_t serial)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	int result = -ETIME;
+
+	pthread_mutex_lock(&pictures->lock);
+	const uint64_t latest_ns = clock_now(pictures->params.clock) + pictures->lead_ns;
+	const bool in_time = latest_ns < grid_time(&pictures->grid, vblank);
+	if (in_time && (!pictures->running || vblank >= pictures->next_vblank))
+		result = flips_present(&pictures->flips, image->index, vblank, group, serial) ? 0 : -EBUSY;
+	if (result == 0 && !pictures->running) {
+		pictures->running = true;
+		pictures->next_vblank = vblank;
+		pthread_cond_signal(&pictures->wake);
+	}
+	pthread_mutex_unlock(&pictures->lock);
+	return result;
+}
+
+void pictures_set_standby(struct presenter *presenter, const struct presenter_image *image, uint64_t group,
+						  uint64_t serial)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	pthread_mutex_lock(&pictures->lock);
+	flips_set_standby(&pictures->flips, image->index, group, serial);
+	pthread_mutex_unlock(&pictures->lock);
+}
+
+void pictures_clear_standby(struct presenter *presenter)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	pthread_mutex_lock(&pictures->lock);
+	flips_clear_standby(&pictures->flips);
+	pthread_mutex_unlock(&pictures->lock);
+}
+
+void pictures_pause(struct presenter *presenter)
+{
+	struct pictures *pictures = pictures_of(presenter);
+	pthread_mutex_lock(&pictures->lock);
+	pictures->running = false;
+	pthread_mutex_unlock(&pictures->lock);
+}
