@@ -116,6 +116,7 @@ struct lab *lab_create(const struct lab_params *params, struct error *error)
 		if (result < 0)
 			error_set(error, result, "lab: cannot start a thread: %s", strerror(-result));
 	}
+	lab->params.header = NULL; /* the caller's */
 	if (result == 0)
 		return lab;
 	free_lab(lab);
