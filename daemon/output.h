@@ -19,7 +19,6 @@
 #include "daemon/clock.h"
 #include "daemon/error.h"
 #include "daemon/intake.h"
-#include "daemon/lab/lab.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
 #include "daemon/options.h"
@@ -51,7 +50,6 @@ struct output_params {
 	const struct settings *settings; /* must live as long */
 	struct clock *clock;
 	const struct log *log;
-	struct lab *lab; /* NULL: none; outlives the output */
 };
 
 struct output_info {
