@@ -16,6 +16,7 @@
 #include "daemon/version.h"
 
 #define TIMELINE_ROWS 400u
+#define LATENCY_ROWS 200u /* that fit a packet */
 
 /* A recording that is being closed on a thread of its own, since the disk may be slow. */
 struct closing {
@@ -249,6 +250,8 @@ char *control_status_text(struct control *control)
 		json_object_set_new(object, "clients", json_integer(server_client_count(control->server)));
 		json_object_set_new(object, "streams", server_streams_json(control->server));
 	}
+	if (control->params.lab)
+		json_object_set_new(object, "lab", lab_status_json(control->params.lab));
 	add_recording(control, object);
 	char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(12));
 	json_decref(object);
@@ -288,6 +291,22 @@ static void on_timeline(struct control *control, const struct request *request)
 	free(text);
 	json_decref(object);
 	free(stats);
+}
+
+static void on_latency(struct control *control, const struct request *request)
+{
+	unsigned long long from = 0, count = LATENCY_ROWS;
+	if (!control->params.lab) {
+		reply(control, request, EINVAL, "latency: this daemon keeps no time points; start pursuitd with --latency");
+		return;
+	}
+	if (sscanf(request->arguments, "%llu %llu", &from, &count) < 0 && *request->arguments)
+		from = 0;
+	json_t *object = lab_rows_json(control->params.lab, from, count < LATENCY_ROWS ? count : LATENCY_ROWS);
+	char *text = object ? json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+	reply(control, request, text ? 0 : ENOMEM, text ? text : "out of memory");
+	free(text);
+	json_decref(object);
 }
 
 /* A pipe or a device could keep the recorder's thread for ever. */
@@ -340,8 +359,9 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 		const char *name;
 		void (*handle)(struct control *control, const struct request *request);
 	} requests[] = {
-		{"status", on_status}, {"settings", on_settings},       {"timeline", on_timeline},
-		{"record", on_record}, {"record-stop", on_record_stop}, {"ping", on_ping},
+		{"status", on_status},   {"settings", on_settings}, {"timeline", on_timeline},
+		{"latency", on_latency}, {"record", on_record},     {"record-stop", on_record_stop},
+		{"ping", on_ping},
 	};
 	struct control *control = data;
 	const size_t length = strcspn(text, " ");
@@ -354,7 +374,7 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 	}
 	char answer[256];
 	snprintf(answer, sizeof(answer),
-			 "\"%.64s\" is no request; there are status, settings, timeline, record, record-stop and ping", text);
+			 "\"%.64s\" is no request; there are status, settings, timeline, latency, record, record-stop and ping", text);
 	reply(control, &request, EINVAL, answer);
 	if (fd >= 0)
 		close(fd);

@@ -10,6 +10,8 @@
  *   timeline [FROM [COUNT]] displayed frames: {first, total, rows: [[vblank,
  *                           target, ready, flip, frame id, show, phase], ...]};
  *                           ask again from first + number of rows
+ *   latency [FROM [COUNT]]  settled rows of the lab, as lab_rows_json() has them;
+ *                           refused where no option of the lab is set
  *   record                  with one fd, a regular file open for writing: records
  *                           the frames received from now on
  *   record-stop             ends the recording; answered when it is on disk:
@@ -37,6 +39,7 @@ struct control_params {
 	struct clock *clock;
 	const struct settings *settings;
 	struct output *output;
+	struct lab *lab; /* NULL: none */
 };
 
 /* Starts the recording that the settings ask for. NULL with a sentence. */

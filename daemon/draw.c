@@ -148,6 +148,7 @@ static int queue(struct render *render, const struct presenter_image *image, uin
 											.ready_ns = clock_now(render->clock)};
 	/* Known before it can be shown. */
 	showing_add_picture(&render->showing, &picture);
+	lab_mark_picture(render->lab, image, serial, vblank, (enum points_show)show);
 	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
 	if (result == 0)
 		render->serial = serial;
@@ -351,5 +352,6 @@ void draw_plain(struct render *render, uint64_t vblank)
 											.show = STATS_STANDBY,
 											.ready_ns = clock_now(render->clock)};
 	showing_add_picture(&render->showing, &picture);
+	lab_mark_picture(render->lab, &image, picture.serial, render->real_vblank, POINTS_STANDBY);
 	render->presenter->impl->set_standby(render->presenter, &image, render->group, picture.serial);
 }

@@ -9,7 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define HELP_COLUMNS 120
+
 static const char *const blur_choices[] = {"doubtful", "everywhere", "off", NULL};
+static const char *const pattern_choices[] = {"toggle",      "pulse",   "pulse-real", "level-real",
+											  "three-lines", "counter", "sequence",   NULL};
+static const char *const level_choices[] = {"low", "high", NULL};
+static const char *const final_choices[] = {"low", "high", "keep", NULL};
+static const char *const patch_choices[] = {"off", "alternate", "sequence", NULL};
+static const char *const corner_choices[] = {"top-left", "top-right", "bottom-left", "bottom-right", NULL};
 static const char *const log_choices[] = {"error", "warning", "info", "debug", NULL};
 
 #define FIELD(name) offsetof(struct settings, name)
@@ -78,6 +86,50 @@ static const struct option_row rows[] = {
 		 "kms: mode like 1920x1080@120; empty: the display's preferred size at the rate nearest to --refresh."),
 	TEXT(kms_device, "kms-device", OPTION_OUTPUT, "",
 		 "kms: device like /dev/dri/card1; empty: the first one that has a display."),
+	FLAG(lab.latency, "latency", OPTION_LAB, "no", "Keep all time points of each displayed frame for pursuit latency."),
+	TEXT(lab.latency_log, "latency-log", OPTION_LAB, "",
+		 "Write the time points of each displayed frame into this file: text for .csv, compact for .bin."),
+	NUMBER(lab.priority, "lab-priority", OPTION_LAB, "20", 0, 99, "",
+		   "Real-time priority (SCHED_FIFO) of the thread that sets lines, where permitted; 0: none."),
+	TEXT(lab.gpio_chip, "gpio-chip", OPTION_LAB, "",
+		 "GPIO chip by path, name or label; empty: the first that has all lines that are given by name."),
+	TEXT(lab.gpio_line, "gpio-line", OPTION_LAB, "",
+		 "Marker lines by offset or name, separated by commas, the lowest first; empty: no marker."),
+	CHOICE(lab.pattern, "gpio-pattern", OPTION_LAB, "toggle", pattern_choices,
+		   "At each flip: toggle, pulse; pulse-real at real frames; level-real high while a real frame is shown; "
+		   "three-lines pulses flip, real, in-between; counter the vblank in binary; sequence as the patch."),
+	NUMBER(lab.pulse_us, "gpio-pulse-us", OPTION_LAB, "1000", 1, 1000000, "us",
+		   "Width of pulses; at most half a refresh is used."),
+	NUMBER(lab.offset_us, "gpio-offset-us", OPTION_LAB, "0", 0, 1000000, "us",
+		   "Edge so long after the flip, for scan-out delay or the middle of the screen."),
+	FLAG(lab.active_low, "gpio-active-low", OPTION_LAB, "no", "High means a low voltage on the marker lines."),
+	CHOICE(lab.initial_level, "gpio-initial", OPTION_LAB, "low", level_choices, "Level before the first flip."),
+	CHOICE(lab.final_level, "gpio-final", OPTION_LAB, "low", final_choices, "Level that is left at the end."),
+	TEXT(lab.strobe_line, "strobe-line", OPTION_LAB, "",
+		 "Line that flashes a backlight once in each refresh, low otherwise; empty: none. Read docs/lab.md first."),
+	REAL(lab.strobe_phase, "strobe-phase", OPTION_LAB, "0.5", 0, 1, "",
+		 "When in the refresh the flash begins, 0 to 1 after the flip."),
+	REAL(lab.strobe_duty, "strobe-duty", OPTION_LAB, "0.1", 0, 0.5, "", "Share of the refresh that the flash lasts."),
+	REAL(lab.strobe_limit, "strobe-limit", OPTION_LAB, "0.25", 0, 0.5, "",
+		 "Hard limit on the share of light over time, whatever flips and wake-ups do."),
+	FLAG(lab.strobe_active_low, "strobe-active-low", OPTION_LAB, "no", "Light means a low voltage on the strobe line."),
+	TEXT(lab.photodiode_line, "photodiode-line", OPTION_LAB, "",
+		 "Input line whose edges are light; they are matched to flips. Empty: none."),
+	FLAG(lab.photodiode_active_low, "photodiode-active-low", OPTION_LAB, "no", "Light means a low voltage."),
+	TEXT(lab.trigger_line, "trigger-line", OPTION_LAB, "",
+		 "Input line of a button or a stimulus computer; its rising edge is noted with the next flip. Empty: none."),
+	FLAG(lab.trigger_active_low, "trigger-active-low", OPTION_LAB, "no", "A trigger is a falling voltage."),
+	NUMBER(lab.debounce_us, "debounce-us", OPTION_LAB, "0", 0, 1000000, "us",
+		   "Edges of the photodiode so soon after one that counted are bounce."),
+	NUMBER(lab.photon_least_us, "photon-least-us", OPTION_LAB, "0", 0, 1000000, "us",
+		   "Light comes no sooner after its flip."),
+	NUMBER(lab.photon_most_us, "photon-most-us", OPTION_LAB, "0", 0, 2000000, "us",
+		   "Light comes sooner than this after its flip; 0: a refresh after photon-least-us, two with a patch."),
+	CHOICE(lab.patch, "patch", OPTION_LAB, "off", patch_choices,
+		   "Square for a photodiode in the picture: alternates black and white, or follows the sequence that identifies "
+		   "each frame."),
+	CHOICE(lab.patch_corner, "patch-corner", OPTION_LAB, "bottom-left", corner_choices, "Corner of the patch."),
+	NUMBER(lab.patch_size, "patch-size", OPTION_LAB, "48", 4, 4096, "px", "Edge of the patch."),
 	TEXT(socket, "socket", OPTION_DAEMON, "",
 		 "Path of the socket; empty: $PURSUIT_SOCKET, else $XDG_RUNTIME_DIR/pursuit/socket, else /run/pursuit/socket."),
 	TEXT(record, "record", OPTION_DAEMON, "", "Record the frames received into this file, from the start."),
@@ -297,6 +349,22 @@ static void describe_values(const struct option_row *row, char *text, size_t siz
 	}
 }
 
+/* Words in lines of a readable length, all but the first indented. */
+static void print_wrapped(const char *text, int indent, FILE *out)
+{
+	int column = indent;
+	for (const char *word = text; *word; word += strspn(word, " ")) {
+		const int length = (int)strcspn(word, " ");
+		if (column > indent && column + 1 + length > HELP_COLUMNS) {
+			fprintf(out, "\n%*s", indent, "");
+			column = indent;
+		}
+		column += fprintf(out, "%s%.*s", column > indent ? " " : "", length, word);
+		word += length;
+	}
+	fputc('\n', out);
+}
+
 void settings_print_help(unsigned group_mask, FILE *out)
 {
 	static const char *const values[] = {"TEXT", NULL, "NUMBER", "NUMBER", "NAME", "RATE", "WxH"};
@@ -309,14 +377,15 @@ void settings_print_help(unsigned group_mask, FILE *out)
 			snprintf(usage, sizeof(usage), "--[no-]%s", row->name);
 		else
 			snprintf(usage, sizeof(usage), "--%s %s", row->name, values[row->type]);
-		fprintf(out, "  %-30s %s\n  %-30s (%s; default %s)\n", usage, row->help, "", range,
-				*row->default_value ? row->default_value : "empty");
+		fprintf(out, "  %-30s ", usage);
+		print_wrapped(row->help, 33, out);
+		fprintf(out, "  %-30s (%s; default %s)\n", "", range, *row->default_value ? row->default_value : "empty");
 	}
 }
 
 void settings_print_config(FILE *out)
 {
-	static const char *const titles[] = {"Engine", "Output", "Daemon"};
+	static const char *const titles[] = {"Engine", "Output", "Lab (docs/lab.md)", "Daemon"};
 	int group = -1;
 	fprintf(out, "# Settings of pursuitd, one `name = value` a line; these are the defaults.\n");
 	for (const struct option_row *row = rows; row->name; row++) {

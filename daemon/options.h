@@ -17,6 +17,7 @@
 
 #include "daemon/engine/engine.h"
 #include "daemon/error.h"
+#include "daemon/lab/settings.h"
 
 struct settings {
 	/* engine */
@@ -42,6 +43,7 @@ struct settings {
 	char connector[32];         /* "": the first that is connected */
 	char mode[32];              /* WxH@R; "": chosen by the refresh rate */
 	char kms_device[104];       /* "": the first with a display */
+	struct lab_settings lab;
 	/* daemon */
 	char socket[104];           /* "": the default path */
 	char record[512];           /* "": do not record */
@@ -64,6 +66,7 @@ enum option_type {
 enum option_group {
 	OPTION_ENGINE,
 	OPTION_OUTPUT,
+	OPTION_LAB,
 	OPTION_DAEMON,
 };
 

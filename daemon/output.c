@@ -125,6 +125,7 @@ static void on_key(void *data, const struct presenter_key *key)
 static void on_flip(void *data, const struct presenter_flip *flip)
 {
 	struct output *output = data;
+	lab_flip(output->params.lab, flip);
 	pthread_mutex_lock(&output->lock);
 	if (output->flip_count < FLIPS)
 		output->flips[output->flip_count++] = *flip;
@@ -240,6 +241,7 @@ static int start(struct output *output)
 		.clock = output->params.clock,
 		.log = output->params.log,
 		.stats = &output->stats,
+		.lab = output->params.lab,
 		.owner = {output, record, report, engine_made},
 	};
 	struct error error = {""};

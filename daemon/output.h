@@ -19,6 +19,7 @@
 #include "daemon/clock.h"
 #include "daemon/error.h"
 #include "daemon/intake.h"
+#include "daemon/lab/lab.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
 #include "daemon/options.h"
@@ -50,6 +51,7 @@ struct output_params {
 	const struct settings *settings; /* must live as long */
 	struct clock *clock;
 	const struct log *log;
+	struct lab *lab; /* NULL: none; outlives the output */
 };
 
 struct output_info {

@@ -15,6 +15,8 @@
 
 #include "daemon/clock.h"
 #include "daemon/control.h"
+#include "daemon/lab/chip.h"
+#include "daemon/lab/lab.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
 #include "daemon/options.h"
@@ -23,7 +25,7 @@
 #include "daemon/server.h"
 #include "daemon/version.h"
 
-#define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_DAEMON)
+#define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_LAB | 1u << OPTION_DAEMON)
 #define EXIT_USAGE 2
 #define DAEMON_NICE (-3)
 
@@ -32,6 +34,7 @@ struct pursuitd {
 	struct log log;
 	struct clock clock;
 	struct loop *loop;
+	struct lab *lab; /* NULL unless an option of the lab is set */
 	struct output *output;
 	struct control *control;
 	struct server *server;
@@ -179,6 +182,34 @@ static void raise_priority(const struct log *log)
 		log_debug(log, "running at ordinary priority (%s)", strerror(errno));
 }
 
+/* What tells how a latency log came to be. */
+static int start_lab(struct pursuitd *daemon, struct error *error)
+{
+	const struct settings *settings = &daemon->settings;
+	char *header = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&header, &size);
+	if (!out)
+		return error_set(error, -ENOMEM, "lab: out of memory");
+	fprintf(out, "program: pursuitd %s\ngpio library: %s\n", PURSUITD_VERSION, chip_library());
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char value[1024];
+		settings_get(settings, row->name, value, sizeof(value));
+		fprintf(out, "setting %s = %s\n", row->name, value);
+	}
+	fclose(out);
+	const struct lab_params params = {
+		.settings = &settings->lab,
+		.clock = &daemon->clock,
+		.log = &daemon->log,
+		.period_ns = 1e9 * (double)settings->refresh_denominator / (double)settings->refresh_numerator,
+		.header = header,
+	};
+	daemon->lab = lab_create(&params, error);
+	free(header);
+	return daemon->lab ? 0 : -1;
+}
+
 static int start(struct pursuitd *daemon, struct error *error)
 {
 	static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
@@ -189,12 +220,16 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->loop = loop_create(error);
 	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)
 		return -1;
-	const struct output_params output_params = {daemon->loop, &daemon->settings, &daemon->clock, &daemon->log};
+	/* Before any thread: it may fork. */
+	if (lab_is_wanted(&daemon->settings.lab) && start_lab(daemon, error) < 0)
+		return -1;
+	const struct output_params output_params = {daemon->loop, &daemon->settings, &daemon->clock, &daemon->log,
+												daemon->lab};
 	daemon->output = output_create(&output_params, error);
 	if (!daemon->output)
 		return -1;
-	const struct control_params control_params = {daemon->loop, &daemon->log, &daemon->clock, &daemon->settings,
-												  daemon->output};
+	const struct control_params control_params = {daemon->loop,      &daemon->log,    &daemon->clock,
+												  &daemon->settings, daemon->output, daemon->lab};
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
 		return -1;
@@ -259,6 +294,7 @@ static void stop(struct pursuitd *daemon)
 	server_destroy(&daemon->server);
 	control_destroy(&daemon->control);
 	output_destroy(&daemon->output);
+	lab_destroy(&daemon->lab);
 	loop_destroy(&daemon->loop);
 }
 

@@ -90,10 +90,31 @@ void render_skip_frames(struct render *render, struct stream *stream)
 	}
 }
 
+/* What only this thread knows about a flip. */
+static void tell_lab(struct render *render, const struct presenter_flip *flip)
+{
+	const struct stats_row *row = &render->stats->timeline[(render->stats->timeline_count - 1) % STATS_TIMELINE];
+	const struct showing_frame *frame = showing_find_frame(&render->showing, flip->group);
+	struct points points = {.vblank = row->vblank,
+							.frame_id = row->frame_id,
+							.phase = row->phase,
+							.show = (uint8_t)row->show,
+							.time[POINT_READY] = row->ready_ns};
+	if (frame) {
+		points.time[POINT_SUBMIT] = frame->report.submit_ns;
+		points.time[POINT_INTAKE] = frame->report.intake_ns;
+	}
+	snprintf(points.method, sizeof(points.method), "%.15s", render->settings->method);
+	lab_tell(render->lab, &points);
+}
+
 void render_flip(struct render *render, const struct presenter_flip *flip)
 {
-	if (render->presenter)
-		showing_flip(&render->showing, flip);
+	if (!render->presenter)
+		return;
+	showing_flip(&render->showing, flip);
+	if (render->lab)
+		tell_lab(render, flip);
 }
 
 /* From now to a picture that is there as early as the presenter wants it. */

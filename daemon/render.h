@@ -48,6 +48,7 @@ struct render {
 	uint64_t lead_ns; /* that the presenter wants pictures before their vblank */
 	struct pacer pacer;
 	struct showing showing;
+	struct lab *lab;     /* NULL: none */
 	struct stats *stats; /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
 

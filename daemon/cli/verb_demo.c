@@ -80,7 +80,7 @@ static bool read_options(struct demo_options *options, int argc, char **argv, in
 					"      40 frames a second become 120 pictures, none of them extrapolated: the yardstick\n",
 		.rows = rows,
 		.settings = &options->settings,
-		.groups = 1u << OPTION_ENGINE | 1u << OPTION_OUTPUT,
+		.groups = 1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_LAB,
 	};
 	return args_parse(&args, argc, argv, status);
 }
@@ -128,11 +128,11 @@ static int make_source(struct demo *demo, struct error *error)
 
 static int start_daemon(struct demo *demo, struct error *error)
 {
-	char texts[MAX_PASSED][256];
+	char texts[MAX_PASSED][640];
 	const char *passed[MAX_PASSED + 1] = {NULL};
 	unsigned count = 0;
 	for (const struct option_row *row = option_table(); row->name && count < MAX_PASSED; row++) {
-		char value[160];
+		char value[560];
 		if (row->group == OPTION_DAEMON || settings_get(&demo->options.settings, row->name, value, sizeof(value)) < 0)
 			continue;
 		snprintf(texts[count], sizeof(texts[count]), "--%s=%s", row->name, value);

@@ -24,6 +24,13 @@ static int apply_params(struct engine *engine, const struct engine_params *param
 	if (result < 0)
 		return result;
 	resolved.method = method->name;
+	if (method->halves_cells)
+		resolved.cell = resolved.cell / 2 > 4 ? resolved.cell / 2 : 4;
+	if (method->blurs_everywhere && resolved.blur == ENGINE_BLUR_DOUBTFUL)
+		resolved.blur = ENGINE_BLUR_EVERYWHERE;
+	/* What another method kept is not the frame before. */
+	if (engine->method != method)
+		pixel_state_forget(&engine->pixels);
 	engine->params = resolved;
 	engine->method = method;
 	return 0;
@@ -34,6 +41,7 @@ static int prepare(struct engine *engine, struct error *error)
 {
 	int result = warm_up(engine, error);
 	engine->begun = false;
+	pixel_state_forget(&engine->pixels);
 	report_begin(&engine->report, 0, engine->executor->ops->time_source(engine->executor));
 	return result;
 }
@@ -65,6 +73,7 @@ void engine_destroy(struct engine **engine)
 		return;
 	executor_destroy(&gone->executor);
 	warp_mesh_finish(&gone->mesh);
+	pixel_state_finish(&gone->pixels);
 	plan_finish(&gone->plan);
 	free(gone);
 	*engine = NULL;

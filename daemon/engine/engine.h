@@ -121,6 +121,7 @@ struct engine;
 struct engine_method_info {
 	const char *name;
 	const char *description;
+	uint32_t lag; /* real frames that it is late by: 1 for what needs the next one */
 };
 const struct engine_method_info *engine_methods(void);
 

@@ -21,9 +21,12 @@ struct engine;
 /* In the order of the report; pass.c has their names. */
 enum pass_id {
 	PASS_ANALYSE = 0,
+	PASS_FIELD,      /* displacement, depth and colour at each pixel into engine->pixels; the same for all executors */
 	PASS_UPLOAD,     /* ORIGINAL and UI from the frame's planes */
 	PASS_PYRAMID,    /* LOW from ORIGINAL, in the marked tiles or everywhere */
 	PASS_COMPENSATE, /* REAL and BETWEEN from ORIGINAL and LOW */
+	PASS_PAINT,      /* engine->pixels.shown by job.paint; the same for all executors */
+	PASS_PUT,        /* SHOWN from engine->pixels.shown */
 	PASS_WARP,       /* SHOWN from job.picture and LOW, by the mesh */
 	PASS_UI,         /* UI over job.picture; job.picture is SHOWN afterwards */
 	PASS_READ,       /* job.picture to job.image */

@@ -6,7 +6,10 @@
 #include <errno.h>
 #include <string.h>
 
-static const struct method *const methods[] = {&method_hold, &method_grid, &method_pursuit};
+static const struct method *const methods[] = {
+	&method_hold,    &method_black, &method_blur_hold,     &method_mcif,    &method_interpolate,
+	&method_scatter, &method_grid,  &method_adaptive_grid, &method_pursuit,
+};
 
 #define METHOD_COUNT (sizeof(methods) / sizeof(methods[0]))
 
@@ -15,7 +18,7 @@ const struct engine_method_info *engine_methods(void)
 	/* Filled with the same values whoever comes first. */
 	static struct engine_method_info infos[METHOD_COUNT + 1];
 	for (size_t i = 0; i < METHOD_COUNT; i++)
-		infos[i] = (struct engine_method_info){methods[i]->name, methods[i]->description};
+		infos[i] = (struct engine_method_info){methods[i]->name, methods[i]->description, methods[i]->lag};
 	return infos;
 }
 

@@ -7,34 +7,8 @@
 
 #include <math.h>
 
-#include "shaders/limits.h"
-
-/* Closer to the real frame's own moment than this, it is shown undisplaced. */
-#define SAME_MOMENT 0.05
-
 /* Merges only what moves alike to far less than the 1/256 pixel that renderers know. */
 #define GRID_TOLERANCE 0.0005f
-
-static double smoothstep(double from, double to, double x)
-{
-	double t = (x - from) / (to - from);
-	t = t > 0.0 ? t < 1.0 ? t : 1.0 : 0.0;
-	return t * t * (3.0 - 2.0 * t);
-}
-
-/* Why the pictures E and B are the original, NULL if they are not. */
-static const char *why_no_blur(const struct engine *engine)
-{
-	if (engine->params.blur == ENGINE_BLUR_OFF)
-		return "off";
-	if (engine->params.blur == ENGINE_BLUR_DOUBTFUL && !engine->mesh.doubtful.count)
-		return "no-distortion";
-	if (engine->params.no_compensation)
-		return NULL;
-	if (engine->n == 1)
-		return "one-vblank";
-	return engine->boost > 0.0 ? NULL : "slow";
-}
 
 static void note_plan(struct engine *engine)
 {
@@ -49,21 +23,6 @@ static void note_plan(struct engine *engine)
 		report_leave_out(report, "snap", "no-discontinuity");
 	if (!engine->plan.folded)
 		report_leave_out(report, "depth-test", "no-fold");
-}
-
-/* What the blur and the boost need, if anything needs them. */
-static int make_layers(struct engine *engine, struct error *error)
-{
-	const char *reason = why_no_blur(engine);
-	engine->compensated = !reason;
-	if (reason)
-		report_leave_out(&engine->report, "blur", reason);
-	if (reason || engine->params.no_compensation)
-		report_leave_out(&engine->report, "boost", reason ? reason : "off");
-	if (!engine->compensated)
-		return 0;
-	int result = pass_run(engine, PASS_PYRAMID, error);
-	return result < 0 ? result : pass_run(engine, PASS_COMPENSATE, error);
 }
 
 /* Whether depth settles what lies before what; if all of it is equal, drawing order does. */
@@ -99,9 +58,9 @@ int grid_begin(struct engine *engine, struct error *error)
 	}
 	note_plan(engine);
 	engine->levels_everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
-	engine->boost = 1.0 - smoothstep(BLOCH_FROM, BLOCH_GONE, engine->plan.real_interval_s);
+	engine->boost = method_boost(engine);
 	result = make_mesh(engine, error);
-	return result < 0 ? result : make_layers(engine, error);
+	return result < 0 ? result : method_make_layers(engine, error);
 }
 
 /* The mesh for a phase, and L if something is torn there. */
@@ -134,7 +93,7 @@ int grid_show(struct engine *engine, enum engine_show show, double phase, enum p
 		return 0;
 	if (engine->compensated)
 		*picture = real ? PICTURE_REAL : PICTURE_BETWEEN;
-	if (real && fabs(phase) <= SAME_MOMENT)
+	if (real && fabs(phase) <= METHOD_SAME_MOMENT)
 		return 0;
 	int result = sort_mesh(engine, phase, error);
 	if (result < 0)

@@ -13,6 +13,9 @@ int pass_run(struct engine *engine, enum pass_id id, struct error *error);
 /* Depth and motion to the plan, on the CPU: the same for all executors. */
 extern const struct pass pass_analyse;
 
+/* For methods that work pixel by pixel, on the CPU too (pixel_state.h). */
+extern const struct pass pass_field, pass_paint;
+
 /*
  * Colour and UI as the display's code values, for the upload of any executor: finds the planes, checks and converts.
  * Checks sizes, makes the converters ready and forgets the UI's bounds; *color and *ui: the planes' places in the

@@ -8,6 +8,7 @@
 #include "daemon/engine/bounds.h"
 #include "daemon/engine/convert.h"
 #include "daemon/engine/executor.h"
+#include "daemon/engine/pixel_state.h"
 #include "daemon/engine/plan.h"
 #include "daemon/engine/warp_mesh.h"
 
@@ -21,6 +22,8 @@ struct job {
 	double phase;               /* warp */
 	enum picture_id picture;    /* warp, ui, read: what they take */
 	struct engine_image *image; /* engine_render() only; an executor may make SHOWN right there */
+	/* paint: fills engine->pixels.shown; 0 or a negative errno with a sentence */
+	int (*paint)(struct engine *engine, struct error *error);
 };
 
 struct engine {
@@ -33,6 +36,7 @@ struct engine {
 	struct convert color_convert, ui_convert;
 	struct plan plan;
 	struct warp_mesh mesh;
+	struct pixel_state pixels;
 
 	/* The frame begun last. */
 	bool begun;

@@ -152,14 +152,21 @@ static void close_lists(struct warp_mesh *mesh, struct warp_list last)
 	mesh->sorted++;
 }
 
+int warp_mesh_begin_tiles(struct warp_mesh *mesh, uint32_t width, uint32_t height, uint32_t level, struct error *error)
+{
+	uint32_t levels_tile = LEVELS_TILE >> level ? LEVELS_TILE : 1u << level;
+	if (tiles_begin(&mesh->low, width, height, LOW_TILE) && tiles_begin(&mesh->levels, width, height, levels_tile))
+		return 0;
+	return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", width, height);
+}
+
 int warp_mesh_sort_doubtful(struct warp_mesh *mesh, uint32_t level, struct error *error)
 {
 	const struct plan *plan = mesh->plan;
 	float phase = plan->last_phase;
-	uint32_t levels_tile = LEVELS_TILE >> level ? LEVELS_TILE : 1u << level;
-	if (!tiles_begin(&mesh->low, plan->width, plan->height, LOW_TILE) ||
-		!tiles_begin(&mesh->levels, plan->width, plan->height, levels_tile))
-		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
+	int result = warp_mesh_begin_tiles(mesh, plan->width, plan->height, level, error);
+	if (result < 0)
+		return result;
 	for (uint32_t i = 0; i < mesh->count; i += 3) {
 		mesh->kinds[i / 3] = KIND_PLAIN;
 		if (mesh->wildness[i / 3] * phase * phase < TAME)

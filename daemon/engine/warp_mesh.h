@@ -54,6 +54,9 @@ struct warp_mesh {
 int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct error *error);
 void warp_mesh_finish(struct warp_mesh *mesh);
 
+/* Unmarks all of `low` and `levels` for a picture of that size. 0 or -ENOMEM with a sentence. */
+int warp_mesh_begin_tiles(struct warp_mesh *mesh, uint32_t width, uint32_t height, uint32_t level, struct error *error);
+
 /*
  * Fills `doubtful`: triangles with a blur weight, and marks in `low` and `levels` what they and torn ones need up to
  * the last phase; the spline over `level` reaches far. 0 or -ENOMEM with a sentence.

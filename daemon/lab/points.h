@@ -20,7 +20,8 @@ enum point {
 	POINT_FLIP,       /* shown, as the presenter says */
 	POINT_EVENT,      /* the presenter's event reached the lab */
 	POINT_EDGE,       /* the call that set the line for it came back */
-	POINT_PHOTON,     /* an input saw it */
+	POINT_PHOTON,     /* the photodiode saw it */
+	POINT_TRIGGER,    /* the newest edge of the trigger input, if one came since the flip before */
 	POINT_COUNT,
 };
 
@@ -53,10 +54,12 @@ struct points {
 	uint8_t source;    /* enum presenter_time_source */
 	bool late;         /* the flip was handled only after the next vblank's time */
 	bool level;        /* of the photodiode patch on display */
+	bool edge_lost;    /* the pattern wanted an edge and no line was there to set */
+	bool photon_lost;  /* light was expected to change, and no input saw it */
 	char method[16];   /* that made the picture */
 };
 
-#define POINTS_BYTES 128u
+#define POINTS_BYTES 136u
 _Static_assert(sizeof(struct points) <= POINTS_BYTES, "rows of the binary log have a fixed size");
 
 static inline const char *points_show_name(uint32_t show)
@@ -68,7 +71,7 @@ static inline const char *points_show_name(uint32_t show)
 static inline const char *point_name(uint32_t point)
 {
 	static const char *const names[POINT_COUNT] = {"submit", "intake", "target", "ready",
-												   "flip",   "event",  "edge",   "photon"};
+												   "flip",   "event",  "edge",   "photon", "trigger"};
 	return point < POINT_COUNT ? names[point] : "unknown";
 }
 

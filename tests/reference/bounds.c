@@ -47,6 +47,10 @@ static void weight_range(const struct bounds *bounds, const struct bounds_triang
 	const struct reference *reference = bounds->reference;
 	const double phase = reference->timing.last_phase;
 	double sigma[2];
+	if (reference->blur_hold) {
+		w[0] = w[1] = reference->blur == ENGINE_BLUR_OFF ? 0.0 : 1.0;
+		return;
+	}
 	w[0] = w[1] =
 		reference->geometry.moves ? reference_weight(&reference->grid, triangle->v, phase, reference->blur) : 0.0;
 	if (reference->blur != ENGINE_BLUR_DOUBTFUL)

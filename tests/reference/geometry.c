@@ -177,6 +177,13 @@ void reference_geometry_init(struct reference_geometry *geometry, const struct f
 		}
 }
 
+void reference_geometry_stop(struct reference_geometry *geometry)
+{
+	for (size_t i = 0; i < (size_t)geometry->width * geometry->height; i++)
+		geometry->ux[i] = geometry->uy[i] = 0.0;
+	geometry->moves = false;
+}
+
 void reference_geometry_finish(struct reference_geometry *geometry)
 {
 	free(geometry->ux);

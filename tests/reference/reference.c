@@ -17,7 +17,9 @@ static void fill_weight(struct reference *reference)
 	free(reference->weight);
 	reference->weight = reference_alloc(count, sizeof(double));
 	/* A frame that is not extrapolated has w = 0, with `everywhere` too (5, 8). */
-	for (size_t i = 0; i < count && reference->geometry.moves; i++)
+	for (size_t i = 0; i < count && reference->blur_hold; i++)
+		reference->weight[i] = reference->blur == ENGINE_BLUR_OFF ? 0.0 : 1.0;
+	for (size_t i = 0; i < count && reference->geometry.moves && !reference->blur_hold; i++)
 		reference->weight[i] =
 			reference_weight(grid, grid->triangles[hits[i].triangle].v, reference->timing.last_phase, reference->blur);
 	free(hits);
@@ -50,6 +52,7 @@ static void take_params(struct reference *reference, const struct engine_params 
 {
 	const double real_s = reference->timing.real_s;
 	reference->hold = params->method && strcmp(params->method, "hold") == 0;
+	reference->blur_hold = params->method && strcmp(params->method, "blur-hold") == 0;
 	reference->blur = params->blur;
 	reference->blur_level = params->blur_level ? params->blur_level : 2;
 	reference->compensation = (struct reference_compensation){
@@ -78,6 +81,8 @@ void reference_begin(struct reference *reference, const struct frame *frame, con
 	if (reference->has_ui)
 		reference_convert_ui(&reference->ui, &header->planes[ui], frame->planes[ui]);
 	reference_geometry_init(&reference->geometry, frame, &reference->timing, display_mm, distance_mm);
+	if (reference->blur_hold)
+		reference_geometry_stop(&reference->geometry);
 	reference_grid_init(&reference->grid, &reference->geometry, params->cell ? params->cell : 8,
 						params->threshold_quarter ? params->threshold_quarter : 2);
 	fill_weight(reference);

@@ -78,6 +78,8 @@ struct reference_geometry {
 };
 void reference_geometry_init(struct reference_geometry *geometry, const struct frame *frame,
 							 const struct reference_timing *timing, double display_width_mm, double distance_mm);
+/* u = 0 everywhere. */
+void reference_geometry_stop(struct reference_geometry *geometry);
 void reference_geometry_finish(struct reference_geometry *geometry);
 
 struct reference_vertex {
@@ -154,6 +156,7 @@ double reference_over(double ui, double ui_alpha, double under);
 struct reference {
 	uint32_t width, height;
 	bool hold;
+	bool blur_hold; /* w = 1 and u = 0 at every pixel [9.3] */
 	enum engine_blur blur;
 	uint32_t blur_level;
 	struct reference_timing timing;

@@ -13,6 +13,7 @@
  * intervals are known to be narrow.
  */
 #include "engine-case.h"
+#include "engine-context.h"
 #include "input.h"
 #include "tests/test.h"
 
@@ -346,33 +347,13 @@ static void test_shares(void)
 	}
 }
 
-static bool choose_context(const char *name, struct engine_params *params)
-{
-	if (strcmp(name, "surfaceless-gl") == 0 || strcmp(name, "surfaceless-gles") == 0)
-		params->context = ENGINE_CONTEXT_EGL_SURFACELESS;
-	else if (strcmp(name, "device-gl") == 0)
-		params->context = ENGINE_CONTEXT_EGL_DEVICE;
-	else if (strcmp(name, "osmesa") == 0)
-		params->context = ENGINE_CONTEXT_OSMESA;
-	else
-		return false;
-	params->gles = strcmp(name, "surfaceless-gles") == 0;
-	return true;
-}
-
 int main(int argc, char **argv)
 {
-	struct engine_params params = {.method = "grid"};
-	struct error error = {""};
-	if (argc != 2 || !choose_context(argv[1], &params)) {
-		fprintf(stderr, "usage: %s surfaceless-gl | surfaceless-gles | device-gl | osmesa\n", argv[0]);
+	if (argc != 2) {
+		fprintf(stderr, "usage: %s " ENGINE_CONTEXT_USAGE "\n", argv[0]);
 		return 2;
 	}
-	engine = engine_create(&params, &error);
-	if (!engine)
-		SKIP(error.text);
-	const struct engine_info *info = engine_get_info(engine);
-	printf("%s, %s, %s\n", info->context, info->renderer, info->version);
+	engine = engine_context_open(argv[1], "grid");
 	RUN(test_hold);
 	RUN(test_fields);
 	RUN(test_compensation);

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/engine/analysis/facts.h"
 #include "daemon/engine/analysis/values.h"
 
 static float lesser(float a, float b)
@@ -25,24 +26,6 @@ static void middle(uint32_t start, uint32_t size, uint32_t *first, uint32_t *sec
 static uint32_t extent(uint32_t start, uint32_t cell, uint32_t end)
 {
 	return end - start < cell ? end - start : cell;
-}
-
-static struct plan_depth depth_of(const struct pursuit_frame_header *header)
-{
-	int index = plan_find_plane(header, PURSUIT_ROLE_DEPTH);
-	float near_distance = header->near_distance, far_distance = header->far_distance;
-	struct plan_depth depth = {.format = index < 0 ? 0 : header->planes[index].format,
-							   .near_distance = near_distance,
-							   .range = far_distance - near_distance};
-	if (header->depth_kind == PURSUIT_DEPTH_DEVICE_REVERSED)
-		depth.map = PLAN_DEPTH_REVERSED;
-	else if (header->depth_kind != PURSUIT_DEPTH_LINEAR)
-		depth.map = PLAN_DEPTH_AS_IS;
-	else if (near_distance > 0 && far_distance > near_distance)
-		depth.map = isinf(far_distance) ? PLAN_DEPTH_INFINITE : PLAN_DEPTH_RANGE;
-	else
-		depth.map = PLAN_DEPTH_OPEN;
-	return depth;
 }
 
 static void take_vertex_row(struct plan_vertex_row *row, size_t columns, struct plan_arena *arena)
@@ -75,7 +58,7 @@ void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t 
 	plan_rows_init(&grid->rows, frame, PURSUIT_ROLE_DEPTH, arena);
 	if (frame->header.depth_kind == PURSUIT_DEPTH_NONE)
 		grid->rows.data = NULL;
-	grid->depth = depth_of(&frame->header);
+	grid->depth = plan_depth_of(&frame->header);
 	grid->peaks = plan_arena_take(arena, width * sizeof(float));
 	grid->largest = plan_arena_take(arena, columns * sizeof(float));
 	grid->snaps = plan_arena_take(arena, columns * sizeof(uint32_t));

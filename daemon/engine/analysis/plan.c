@@ -7,33 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "daemon/engine/analysis/facts.h"
 #include "daemon/engine/analysis/grid.h"
-
-/* The nanoseconds T and S, each 0 only if neither is known. */
-struct intervals {
-	uint64_t real, motion;
-};
-
-static struct intervals intervals_of(const struct pursuit_frame_header *header, const struct plan_params *params)
-{
-	uint64_t own = header->real_interval_ns;
-	uint64_t motion = header->motion_interval_ns ? header->motion_interval_ns : own;
-	uint64_t real = params->real_interval_ns ? params->real_interval_ns : own;
-	return (struct intervals){real ? real : motion, motion ? motion : real};
-}
-
-static enum plan_rest rest_of(const struct frame *frame, const struct intervals *intervals)
-{
-	const struct pursuit_frame_header *header = &frame->header;
-	int motion = plan_find_plane(header, PURSUIT_ROLE_MOTION);
-	if (header->flags & PURSUIT_FRAME_CUT)
-		return PLAN_CUT;
-	if (header->flags & PURSUIT_FRAME_MOTION_INVALID)
-		return PLAN_MOTION_INVALID;
-	if (motion < 0 || header->motion_kind == PURSUIT_MOTION_NONE || !frame->planes[motion])
-		return PLAN_NO_MOTION;
-	return intervals->real ? PLAN_MOVES : PLAN_NO_INTERVAL;
-}
 
 static void reset(struct plan *plan, const struct frame *frame, const struct plan_params *params)
 {
@@ -122,10 +97,10 @@ static int out_of_memory(struct plan *plan, struct error *error)
 int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
 				   const struct plan_kernels *kernels, struct error *error)
 {
-	struct intervals intervals = intervals_of(&frame->header, params);
+	struct plan_intervals intervals = plan_intervals_of(&frame->header, params->real_interval_ns);
 	reset(plan, frame, params);
 	plan->real_interval_s = (double)intervals.real * 1e-9;
-	plan->rest = rest_of(frame, &intervals);
+	plan->rest = plan_rest_of(frame, &intervals);
 	if (plan->rest != PLAN_MOVES)
 		return 0;
 	uint32_t threshold = params->threshold_quarter ? params->threshold_quarter : 2;

@@ -109,6 +109,9 @@ static const struct executor_ops ops = {
 	.passes =
 		{
 			[PASS_ANALYSE] = &pass_analyse,
+			[PASS_FIELD] = &pass_field,
+			[PASS_PAINT] = &pass_paint,
+			[PASS_PUT] = &gl_pass_put,
 			[PASS_UPLOAD] = &gl_pass_upload,
 			[PASS_PYRAMID] = &gl_pass_pyramid,
 			[PASS_COMPENSATE] = &gl_pass_compensate,

@@ -46,6 +46,7 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
 	return &gl_of(engine)->pictures[id];
 }
 
-extern const struct pass gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_warp, gl_pass_ui, gl_pass_read;
+extern const struct pass gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_put, gl_pass_warp, gl_pass_ui,
+	gl_pass_read;
 
 #endif

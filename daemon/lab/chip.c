@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/lab/chip.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+int chip_next_line(const char **list, char name[CHIP_NAME_BYTES])
+{
+	if (!**list)
+		return 0;
+	const size_t length = strcspn(*list, ",");
+	if (length == 0 || length >= CHIP_NAME_BYTES)
+		return -EINVAL;
+	snprintf(name, CHIP_NAME_BYTES, "%.*s", (int)length, *list);
+	*list += length;
+	if (**list == ',' && *++*list == '\0')
+		return -EINVAL;
+	return 1;
+}
+
+bool chip_is_offset(const char *name, uint32_t *offset)
+{
+	char *end;
+	if (!isdigit((unsigned char)*name))
+		return false;
+	errno = 0;
+	const unsigned long number = strtoul(name, &end, 10);
+	*offset = (uint32_t)number;
+	return *end == '\0' && errno == 0 && number <= 65535;
+}
+
+int chip_count_lines(const char *list, const char *option, struct error *error)
+{
+	char names[CHIP_LINES][CHIP_NAME_BYTES];
+	const char *rest = list;
+	int count = 0, taken;
+	while (count < (int)CHIP_LINES && (taken = chip_next_line(&rest, names[count])) == 1) {
+		for (int i = 0; i < count; i++)
+			if (strcmp(names[i], names[count]) == 0)
+				return error_set(error, -EINVAL, "%s: %s is listed twice", option, names[i]);
+		count++;
+	}
+	if (count == (int)CHIP_LINES && *rest)
+		return error_set(error, -EINVAL, "%s: \"%.64s\" has more than %u lines", option, list, CHIP_LINES);
+	if (count == 0 || taken < 0)
+		return error_set(error, -EINVAL, "%s: \"%.64s\" is no list of lines like 17 or GPIO17,GPIO27", option, list);
+	return count;
+}
+
+int chip_explain_open(const char *chip, int code, struct error *error)
+{
+	if (code == EACCES || code == EPERM)
+		return error_set(
+			error, -code,
+			"gpio-chip: no permission to open %.64s; join the group that owns it (ls -l /dev/gpiochip*) or "
+			"install the udev rule of docs/lab.md",
+			chip);
+	return error_set(error, -code, "gpio-chip: %.64s: %s", chip, strerror(code));
+}

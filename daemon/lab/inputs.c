@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/lab/state.h"
+
+#define READ_MOST 16u
+/* Flip events may come so much later than the edges that they cause. */
+#define HOLD_NS UINT64_C(40000000)
+
+static struct lines input(const struct lab *lab, const char *line, const char *option, bool active_low)
+{
+	return (struct lines){
+		.params = {.chip = lab->settings->gpio_chip,
+				   .lines = line,
+				   .option = option,
+				   .input = true,
+				   .active_low = active_low},
+		.log = lab->params.log,
+		.wanted = *line != '\0',
+	};
+}
+
+void inputs_init(struct lab *lab)
+{
+	const struct lab_settings *settings = lab->settings;
+	lab->photodiode = input(lab, settings->photodiode_line, "photodiode-line", settings->photodiode_active_low);
+	lab->trigger = input(lab, settings->trigger_line, "trigger-line", settings->trigger_active_low);
+	lab->match.least_ns = (uint64_t)settings->photon_least_us * 1000;
+	lab->match.debounce_ns = (uint64_t)settings->debounce_us * 1000;
+}
+
+/* An alternating patch tells two neighbours apart by direction; without a patch any edge may be any flip's. */
+static uint64_t window_end(const struct lab *lab)
+{
+	if (lab->settings->photon_most_us)
+		return (uint64_t)lab->settings->photon_most_us * 1000;
+	const double periods = lab->settings->patch == LAB_PATCH_OFF ? 1.0 : 2.0;
+	return lab->match.least_ns + (uint64_t)(periods * lab->period_ns);
+}
+
+void inputs_flip(struct lab *lab, struct row *row, bool changed)
+{
+	enum match_want want = MATCH_EITHER;
+	if (lab->trigger_ns != 0 && lab->trigger_ns <= row->points.time[POINT_FLIP]) {
+		row->points.time[POINT_TRIGGER] = lab->trigger_ns;
+		lab->trigger_ns = 0;
+	}
+	if (!lab->photodiode.chip)
+		return;
+	if (lab->settings->patch != LAB_PATCH_OFF)
+		want = !changed ? MATCH_NONE : row->points.level ? MATCH_RISING : MATCH_FALLING;
+	lab->match.most_ns = window_end(lab);
+	row->photon_open = true;
+	row->points.time[POINT_PHOTON] = POINT_NOT_YET;
+	match_add_flip(&lab->match, row->points.vblank, row->points.time[POINT_FLIP], want);
+}
+
+static void read_line(struct lab *lab, struct lines *lines, uint64_t now_ns, bool photodiode)
+{
+	struct chip_edge edges[READ_MOST];
+	int count;
+	if (!lines->chip)
+		return;
+	while ((count = chip_read(lines->chip, edges, READ_MOST)) > 0) {
+		for (int i = 0; i < count && photodiode; i++)
+			match_add_edge(&lab->match, edges[i].time_ns, edges[i].rising);
+		for (int i = 0; i < count && !photodiode; i++) {
+			/* The leading edge is the trigger; an input says which by active-low. */
+			lab->triggers += edges[i].rising;
+			lab->trigger_ns = edges[i].rising ? edges[i].time_ns : lab->trigger_ns;
+		}
+	}
+	if (count < 0)
+		lines_lose(lines, count, now_ns);
+}
+
+static void settle(struct lab *lab, uint64_t now_ns)
+{
+	struct match_result result;
+	while (match_next(&lab->match, now_ns, HOLD_NS, &result)) {
+		struct row *row = result.fate == MATCH_STRAY ? NULL : rows_find(&lab->rows, result.number);
+		if (!row)
+			continue;
+		row->photon_open = false;
+		row->points.time[POINT_PHOTON] = result.edge_ns;
+		row->points.photon_lost = result.fate == MATCH_LOST && lab->settings->patch != LAB_PATCH_OFF;
+	}
+}
+
+void inputs_work(struct lab *lab, uint64_t now_ns)
+{
+	read_line(lab, &lab->photodiode, now_ns, true);
+	read_line(lab, &lab->trigger, now_ns, false);
+	settle(lab, now_ns);
+	lines_check(&lab->photodiode, now_ns);
+	lines_check(&lab->trigger, now_ns);
+	lines_revive(&lab->photodiode, now_ns);
+	lines_revive(&lab->trigger, now_ns);
+}
+
+uint64_t inputs_next(const struct lab *lab)
+{
+	uint64_t next = lines_next(&lab->photodiode);
+	if (lines_next(&lab->trigger) < next)
+		next = lines_next(&lab->trigger);
+	if (lab->match.flip_count > 0) {
+		const uint64_t settled = lab->match.flips[0].flip_ns + lab->match.most_ns + HOLD_NS;
+		next = settled < next ? settled : next;
+	}
+	return next;
+}
+
+void inputs_finish(struct lab *lab)
+{
+	lines_finish(&lab->photodiode);
+	lines_finish(&lab->trigger);
+}

@@ -1,0 +1,178 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/lab/lab.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "daemon/lab/patch.h"
+#include "daemon/lab/state.h"
+
+bool lab_is_wanted(const struct lab_settings *settings)
+{
+	return settings->latency || *settings->latency_log || *settings->gpio_line || *settings->strobe_line ||
+		   *settings->photodiode_line || *settings->trigger_line || settings->patch != LAB_PATCH_OFF;
+}
+
+/* ---- checks ---- */
+
+static int check_pattern(const struct lab_settings *settings, struct error *error)
+{
+	const uint32_t wanted = pattern_lines((enum pattern_kind)settings->pattern);
+	if (!*settings->gpio_line)
+		return 0;
+	const int count = chip_count_lines(settings->gpio_line, "gpio-line", error);
+	if (count < 0)
+		return count;
+	if (wanted != 0 && (uint32_t)count != wanted)
+		return error_set(error, -EINVAL, "gpio-line: \"%.64s\" has %d line%s, the pattern wants %u",
+						 settings->gpio_line, count, count == 1 ? "" : "s", wanted);
+	return 0;
+}
+
+static int check_single(const char *lines, const char *option, struct error *error)
+{
+	const int count = *lines ? chip_count_lines(lines, option, error) : 1;
+	if (count < 0)
+		return count;
+	return count == 1 ? 0 : error_set(error, -EINVAL, "%s: \"%.64s\": one line is wanted", option, lines);
+}
+
+static int check(const struct lab_settings *settings, struct error *error)
+{
+	if (check_pattern(settings, error) < 0 || check_single(settings->strobe_line, "strobe-line", error) < 0 ||
+		check_single(settings->photodiode_line, "photodiode-line", error) < 0 ||
+		check_single(settings->trigger_line, "trigger-line", error) < 0)
+		return -EINVAL;
+	if (settings->strobe_duty > settings->strobe_limit)
+		return error_set(error, -EINVAL, "strobe-duty: %g is above the strobe-limit, %g", settings->strobe_duty,
+						 settings->strobe_limit);
+	if (settings->photon_most_us && settings->photon_most_us <= settings->photon_least_us)
+		return error_set(error, -EINVAL, "photon-most-us: %u is not above photon-least-us, %u",
+						 settings->photon_most_us, settings->photon_least_us);
+	return 0;
+}
+
+/* ---- life ---- */
+
+static void init_lock(pthread_mutex_t *lock)
+{
+	pthread_mutexattr_t attributes;
+	pthread_mutexattr_init(&attributes);
+	pthread_mutexattr_setprotocol(&attributes, PTHREAD_PRIO_INHERIT);
+	pthread_mutex_init(lock, &attributes);
+	pthread_mutexattr_destroy(&attributes);
+}
+
+static void free_lab(struct lab *lab)
+{
+	guard_dismiss(&lab->guard);
+	latency_log_destroy(&lab->latency_log);
+	code_destroy(&lab->code);
+	if (lab->wake_fd >= 0)
+		close(lab->wake_fd);
+	pthread_mutex_destroy(&lab->shared.lock);
+	free(lab);
+}
+
+/* What the thread needs; the guard before any thread. */
+static int prepare(struct lab *lab, struct error *error)
+{
+	lab->wake_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+	lab->code = code_create();
+	if (lab->wake_fd < 0 || !lab->code)
+		return error_set(error, -ENOMEM, "lab: out of memory or file descriptors");
+	outputs_init(lab);
+	inputs_init(lab);
+	if (lab->strobe_lines.wanted && guard_start(&lab->guard, &lab->strobe_lines.params, error) < 0)
+		return -EAGAIN;
+	if (!*lab->settings->latency_log)
+		return 0;
+	lab->latency_log = latency_log_create(lab->settings->latency_log, lab->params.header, lab->params.log, error);
+	return lab->latency_log ? 0 : -EIO;
+}
+
+struct lab *lab_create(const struct lab_params *params, struct error *error)
+{
+	if (check(params->settings, error) < 0)
+		return NULL;
+	struct lab *lab = calloc(1, sizeof(*lab));
+	if (!lab) {
+		error_set(error, -ENOMEM, "lab: out of memory");
+		return NULL;
+	}
+	lab->params = *params;
+	lab->params.header = params->header ? params->header : "";
+	lab->settings = params->settings;
+	lab->period_ns = params->period_ns;
+	init_lock(&lab->shared.lock);
+	int result = prepare(lab, error);
+	if (result == 0) {
+		result = -pthread_create(&lab->thread, NULL, lab_run, lab);
+		if (result < 0)
+			error_set(error, result, "lab: cannot start a thread: %s", strerror(-result));
+	}
+	lab->params.header = NULL; /* the caller's */
+	if (result == 0)
+		return lab;
+	free_lab(lab);
+	return NULL;
+}
+
+static void wake(struct lab *lab)
+{
+	const uint64_t one = 1;
+	/* A full counter wakes just as well. */
+	if (write(lab->wake_fd, &one, sizeof(one)) < 0 && errno != EAGAIN)
+		log_error(lab->params.log, "lab: eventfd: %s", strerror(errno));
+}
+
+void lab_destroy(struct lab **lab)
+{
+	struct lab *self = *lab;
+	*lab = NULL;
+	if (!self)
+		return;
+	atomic_store(&self->stop, true);
+	wake(self);
+	pthread_join(self->thread, NULL);
+	free_lab(self);
+}
+
+/* ---- feeding ---- */
+
+void lab_flip(struct lab *lab, const struct presenter_flip *flip)
+{
+	if (!lab)
+		return;
+	const struct queue_message message = {.kind = QUEUE_FLIP, .event_ns = clock_now(lab->params.clock), .flip = *flip};
+	queue_push(&lab->flips, &message);
+	wake(lab);
+}
+
+void lab_mark_picture(struct lab *lab, const struct presenter_image *image, uint64_t serial, uint64_t vblank,
+					  enum points_show show)
+{
+	if (!lab)
+		return;
+	const struct lab_settings *settings = lab->settings;
+	struct queue_message message = {.kind = QUEUE_PICTURE,
+									.picture = {.serial = serial, .code = (uint32_t)vblank, .show = (uint8_t)show}};
+	message.picture.level =
+		settings->patch == LAB_PATCH_ALTERNATE ? vblank & 1 : code_bit(lab->code, message.picture.code);
+	if (settings->patch != LAB_PATCH_OFF)
+		patch_draw(image, settings->patch_corner, settings->patch_size, message.picture.level);
+	queue_push(&lab->render, &message);
+}
+
+void lab_tell(struct lab *lab, const struct points *points)
+{
+	if (!lab)
+		return;
+	const struct queue_message message = {.kind = QUEUE_POINTS, .points = *points};
+	queue_push(&lab->render, &message);
+}

@@ -1,0 +1,371 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The GLFW presenter: a window, or full screen, on a desktop. Main makes the
+ * window and handles its events; a thread here, the keeper of vblanks, takes
+ * the picture of each one out of the queue and orders it from the drawing
+ * thread, whose swaps may wait for the display as long as they like: one that
+ * does not come back in time (a hidden window) leaves the keeper counting
+ * vblanks by the clock.
+ *
+ * Where swaps wait for the display, its vblanks are learned from their time
+ * stamps; where they do not (no vsync), vblanks are those of the rate wished
+ * for, and pictures are drawn at their times.
+ */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+
+#include "daemon/present/drawer.h"
+#include "daemon/present/pictures.h"
+#include "daemon/present/vblanks.h"
+
+#define MS UINT64_C(1000000)
+#define LEAST_LEAD (MS + MS / 2)
+/* Swaps in a row that tell whether they wait for the display. */
+#define PROBE_SWAPS 12u
+#define PROBE_NS (500 * MS)
+#define STUCK_NS (500 * MS)
+
+struct glfw {
+	struct pictures pictures; /* its lock is for what follows, unless it says otherwise */
+	struct window *window;    /* main's */
+	pthread_t keeper;
+	struct window_state state;
+	uint32_t fit_width, fit_height; /* of the first picture, until main has seen it */
+	bool fitted;
+
+	/* the keeper's own */
+	struct drawer *drawer;
+	bool under_way, stuck_said;
+	uint64_t ordered_ns;
+	uint32_t image; /* under way, referenced; FLIPS_IMAGES: none */
+	uint32_t drawn_changes, probed_displays;
+	bool waits_for_display; /* swaps do */
+	struct vblanks vblanks;
+	uint64_t first_vblank; /* vblank 0 of `vblanks` */
+	uint32_t skipped;      /* since the last flip */
+};
+
+/* ---- the keeper: orders ---- */
+
+/* With the lock. Orders the front, or black. */
+static void order(struct glfw *self, uint32_t swaps)
+{
+	struct pictures *pictures = &self->pictures;
+	const struct flips *flips = &pictures->flips;
+	self->image = flips->has_front ? flips->front.image : FLIPS_IMAGES;
+	if (flips->has_front)
+		pictures->flips.references[self->image]++;
+	self->under_way = true;
+	self->ordered_ns = clock_now(pictures->params.clock);
+	self->drawn_changes = self->state.changes;
+	drawer_order(self->drawer, flips->has_front ? &pictures->shapes[self->image] : NULL, self->state.width,
+				 self->state.height, swaps);
+}
+
+/* With the lock, which is given up while it waits. False: not back yet. */
+static bool wait_for_order(struct glfw *self, uint64_t until_ns, struct drawer_swap *swap)
+{
+	struct pictures *pictures = &self->pictures;
+	if (!self->under_way)
+		return true;
+	pthread_mutex_unlock(&pictures->lock);
+	const bool done = drawer_wait(self->drawer, until_ns, swap);
+	pthread_mutex_lock(&pictures->lock);
+	if (!done) {
+		if (!self->stuck_said && clock_now(pictures->params.clock) - self->ordered_ns > STUCK_NS) {
+			log_info(pictures->params.log,
+					 "glfw: a swap does not come back; vblanks are counted by the clock until then");
+			self->stuck_said = true;
+		}
+		return false;
+	}
+	if (self->image < FLIPS_IMAGES)
+		flips_release(&pictures->flips, self->image);
+	self->under_way = self->stuck_said = false;
+	return true;
+}
+
+/* With the lock: may it draw now? */
+static bool can_draw(struct glfw *self)
+{
+	struct drawer_swap swap;
+	return wait_for_order(self, 0, &swap) && !self->state.hidden;
+}
+
+/* ---- the keeper: the display's rate ---- */
+
+static void set_lead(struct glfw *self, uint64_t drawing_ns)
+{
+	struct pictures *pictures = &self->pictures;
+	const uint64_t most = (uint64_t)(0.7 * grid_period_ns(&pictures->grid));
+	const uint64_t lead = LEAST_LEAD + 2 * drawing_ns;
+	if (!self->waits_for_display)
+		pictures->lead_ns = 0;
+	else if (pictures->lead_ns < lead)
+		pictures->lead_ns = lead < most ? lead : most;
+	else
+		pictures->lead_ns -= (pictures->lead_ns - lead) / 64;
+}
+
+static void adopt_vblanks(struct glfw *self)
+{
+	self->pictures.grid = vblanks_get_grid(&self->vblanks);
+	self->pictures.grid.epoch_vblank += self->first_vblank;
+}
+
+/* Vblanks are counted anew, their numbers go on. */
+static void begin_grid(struct glfw *self, double refresh_hz)
+{
+	struct pictures *pictures = &self->pictures;
+	const uint64_t now_ns = clock_now(pictures->params.clock);
+	self->first_vblank = grid_at_or_after(&pictures->grid, now_ns) + 1;
+	if (self->first_vblank < pictures->next_vblank)
+		self->first_vblank = pictures->next_vblank;
+	if (self->waits_for_display)
+		vblanks_init(&self->vblanks, (uint64_t)(refresh_hz * 1e3 + 0.5), 1000, now_ns);
+	else
+		vblanks_init(&self->vblanks, pictures->params.refresh_numerator, pictures->params.refresh_denominator, now_ns);
+	adopt_vblanks(self);
+}
+
+/* With the lock: finds out by some swaps in a row whether they wait for the display. */
+static void probe(struct glfw *self)
+{
+	struct pictures *pictures = &self->pictures;
+	struct drawer_swap swap = {.time_ns = 0};
+	const double mode_hz = self->state.refresh_hz;
+	self->probed_displays = self->state.displays;
+	order(self, PROBE_SWAPS);
+	const bool back = wait_for_order(self, clock_now(pictures->params.clock) + PROBE_NS, &swap);
+	const double hz = back && swap.interval_ns ? 1e9 / (double)swap.interval_ns : 0.0;
+	/* A rate that no mode has said is believed too, if it is one of displays and not that of an idle CPU. */
+	self->waits_for_display = mode_hz > 0.0 ? hz > 0.6 * mode_hz && hz < 1.5 * mode_hz : false;
+	begin_grid(self, mode_hz);
+	set_lead(self, swap.drawing_ns);
+	if (self->waits_for_display)
+		log_info(pictures->params.log, "glfw: swaps wait for the display, at about %.2f Hz; time stamps: %s", hz,
+				 presenter_time_source_name(swap.source));
+	else
+		log_info(pictures->params.log,
+				 "glfw: swaps do not wait for the display (%.0f a second, its mode says %.0f Hz): shown by the clock",
+				 hz, mode_hz);
+}
+
+/* ---- the keeper: vblanks ---- */
+
+/* With the lock: what the swap says about the flip and the display. */
+static void note_swap(struct glfw *self, const struct drawer_swap *swap, struct presenter_flip *flip)
+{
+	struct pictures *pictures = &self->pictures;
+	flip->flip_ns = swap->time_ns;
+	flip->sequence = swap->sequence;
+	flip->time_source = swap->source;
+	flip->late = swap->time_ns >= grid_time(&pictures->grid, flip->vblank + 1);
+	if (!self->waits_for_display)
+		return;
+	const uint64_t vblank = self->first_vblank + vblanks_add(&self->vblanks, swap->sequence, swap->time_ns);
+	adopt_vblanks(self);
+	set_lead(self, swap->drawing_ns);
+	flip->late = vblank > flip->vblank;
+	if (vblank >= pictures->next_vblank) {
+		self->skipped = (uint32_t)(vblank + 1 - pictures->next_vblank);
+		pictures->next_vblank = vblank + 1;
+	}
+}
+
+/* With the lock: the vblank next_vblank, from the choice of its picture to its flip event. */
+static void keep_vblank(struct glfw *self)
+{
+	struct pictures *pictures = &self->pictures;
+	struct drawer_swap swap;
+	struct presenter_flip flip = pictures_show_next(pictures, clock_now(pictures->params.clock));
+	flip.skipped += self->skipped;
+	self->skipped = 0;
+	flip.time_source = PRESENTER_TIME_TIMER;
+	const bool due = flip.shown != PRESENTER_KEPT || self->state.changes != self->drawn_changes;
+	if (due && can_draw(self)) {
+		order(self, 1);
+		if (wait_for_order(self, grid_time(&pictures->grid, flip.vblank + 2), &swap))
+			note_swap(self, &swap, &flip);
+	}
+	if (!self->fitted && pictures->flips.has_front) {
+		self->fitted = true;
+		self->fit_width = pictures->shapes[pictures->flips.front.image].width;
+		self->fit_height = pictures->shapes[pictures->flips.front.image].height;
+	}
+	pthread_mutex_unlock(&pictures->lock);
+	if (flip.time_source == PRESENTER_TIME_TIMER) {
+		clock_wait_until(pictures->params.clock, flip.target_ns);
+		flip.flip_ns = clock_now(pictures->params.clock);
+		flip.late = flip.flip_ns >= flip.target_ns + (uint64_t)grid_period_ns(&pictures->grid);
+	}
+	pictures->params.flip(pictures->params.data, &flip);
+	pthread_mutex_lock(&pictures->lock);
+}
+
+/* With the lock: nothing is shown; the window may have to be drawn anew. */
+static void keep_still(struct glfw *self)
+{
+	struct pictures *pictures = &self->pictures;
+	struct drawer_swap swap;
+	if (self->state.changes != self->drawn_changes && can_draw(self)) {
+		order(self, 1);
+		wait_for_order(self, clock_now(pictures->params.clock) + PROBE_NS, &swap);
+	} else {
+		pthread_cond_wait(&pictures->wake, &pictures->lock);
+	}
+}
+
+static void *run(void *data)
+{
+	struct glfw *self = data;
+	struct pictures *pictures = &self->pictures;
+	pthread_setname_np(pthread_self(), "pursuit-flip");
+	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
+	pthread_mutex_lock(&pictures->lock);
+	while (!pictures->stop) {
+		if (self->state.displays != self->probed_displays && can_draw(self)) {
+			probe(self);
+			continue;
+		}
+		if (!pictures->running) {
+			keep_still(self);
+			continue;
+		}
+		const uint64_t vblank = pictures->next_vblank;
+		const uint64_t start_ns = grid_time(&pictures->grid, vblank) - pictures->lead_ns;
+		pthread_mutex_unlock(&pictures->lock);
+		clock_wait_until(pictures->params.clock, start_ns);
+		pthread_mutex_lock(&pictures->lock);
+		if (!pictures->stop && pictures->running && pictures->next_vblank == vblank)
+			keep_vblank(self);
+	}
+	pthread_mutex_unlock(&pictures->lock);
+	return NULL;
+}
+
+/* ---- main ---- */
+
+static void on_key(void *data, uint32_t code)
+{
+	struct glfw *self = data;
+	const struct presenter_key key = {code, clock_now(self->pictures.params.clock)};
+	self->pictures.params.key(self->pictures.params.data, &key);
+}
+
+static void on_changed(void *data, const struct window_state *state)
+{
+	struct glfw *self = data;
+	pthread_mutex_lock(&self->pictures.lock);
+	self->state = *state;
+	pthread_cond_signal(&self->pictures.wake);
+	pthread_mutex_unlock(&self->pictures.lock);
+}
+
+static void on_lost(void *data, const char *sentence)
+{
+	struct glfw *self = data;
+	self->pictures.params.lost(self->pictures.params.data, sentence);
+}
+
+static void free_glfw(struct glfw *self)
+{
+	/* A thread that hangs in a swap still has the window. */
+	if (drawer_destroy(&self->drawer))
+		window_destroy(&self->window);
+	else
+		log_warning(self->pictures.params.log, "glfw: a swap hangs; its window is left behind");
+	pictures_finish(&self->pictures);
+	free(self);
+}
+
+static int open_all(struct glfw *self, struct error *error)
+{
+	const struct presenter_params *params = &self->pictures.params;
+	const struct window_params window_params = {
+		.log = params->log,
+		.options = &params->options,
+		.refresh_hz = (double)params->refresh_numerator / (double)params->refresh_denominator,
+		.key = on_key,
+		.changed = on_changed,
+		.lost = on_lost,
+		.data = self,
+	};
+	self->window = window_create(&window_params, error);
+	if (!self->window)
+		return -ENODEV;
+	self->drawer = drawer_create(self->window, params->clock, error);
+	if (!self->drawer)
+		return -EIO;
+	const int result = pthread_create(&self->keeper, NULL, run, self);
+	return result == 0 ? 0 : error_set(error, -result, "glfw: cannot start a thread: %s", strerror(result));
+}
+
+static struct presenter *glfw_create(const struct presenter_params *params, struct error *error)
+{
+	struct glfw *self = calloc(1, sizeof(*self));
+	if (!self) {
+		error_set(error, -ENOMEM, "glfw: out of memory");
+		return NULL;
+	}
+	pictures_init(&self->pictures, &presenter_glfw, params);
+	if (open_all(self, error) == 0)
+		return &self->pictures.presenter;
+	free_glfw(self);
+	return NULL;
+}
+
+static void glfw_destroy(struct presenter *presenter)
+{
+	struct glfw *self = (struct glfw *)presenter;
+	pthread_mutex_lock(&self->pictures.lock);
+	self->pictures.stop = true;
+	pthread_cond_signal(&self->pictures.wake);
+	pthread_mutex_unlock(&self->pictures.lock);
+	pthread_join(self->keeper, NULL);
+	free_glfw(self);
+}
+
+static int glfw_get_event_fd(struct presenter *presenter)
+{
+	return window_get_event_fd(((struct glfw *)presenter)->window);
+}
+
+static void glfw_process_events(struct presenter *presenter)
+{
+	struct glfw *self = (struct glfw *)presenter;
+	window_process_events(self->window);
+	pthread_mutex_lock(&self->pictures.lock);
+	const uint32_t width = self->fit_width, height = self->fit_height;
+	self->fit_width = 0;
+	pthread_mutex_unlock(&self->pictures.lock);
+	if (width)
+		window_fit(self->window, width, height);
+}
+
+static void glfw_toggle_fullscreen(struct presenter *presenter)
+{
+	window_toggle_fullscreen(((struct glfw *)presenter)->window);
+}
+
+const struct presenter_impl presenter_glfw = {
+	.name = "glfw",
+	.description = "a window, or full screen, on a desktop",
+	.create = glfw_create,
+	.destroy = glfw_destroy,
+	.get_grid = pictures_get_grid,
+	.get_lead = pictures_get_lead,
+	.acquire = pictures_acquire,
+	.release = pictures_release,
+	.present = pictures_present,
+	.set_standby = pictures_set_standby,
+	.clear_standby = pictures_clear_standby,
+	.pause = pictures_pause,
+	.get_event_fd = glfw_get_event_fd,
+	.process_events = glfw_process_events,
+	.toggle_fullscreen = glfw_toggle_fullscreen,
+};

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * A window with a GL context, of the GLFW presenter: the only file behind it
+ * includes GLFW, which wants one window library a process, made and asked for
+ * events on main. Functions of the drawing thread are marked so; that thread
+ * has the context.
+ */
+#ifndef PURSUIT_WINDOW_H
+#define PURSUIT_WINDOW_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daemon/error.h"
+#include "daemon/present/presenter.h"
+
+struct window;
+
+/* As it is now. */
+struct window_state {
+	uint32_t width, height; /* of the framebuffer, pixels */
+	bool hidden;            /* iconified or without area: nothing drawn there can be seen */
+	double refresh_hz;      /* as the monitor's mode says, a whole number mostly; 0 unknown */
+	uint32_t changes;       /* rises with each change of the above, and when it needs to be drawn anew */
+	uint32_t displays;      /* rises when its vblanks may have become those of another display */
+};
+
+struct window_params {
+	const struct log *log;
+	const struct presenter_options *options; /* valid while it is created */
+	double refresh_hz;                       /* wished for, for full screen */
+	/* On main. */
+	void (*key)(void *data, uint32_t code);
+	void (*changed)(void *data, const struct window_state *state);
+	/* On any thread, once: the display server is gone. */
+	void (*lost)(void *data, const char *sentence);
+	void *data;
+};
+
+/* ---- main ---- */
+
+/* Shows an empty window. NULL with a sentence. */
+struct window *window_create(const struct window_params *params, struct error *error);
+/* After the drawing thread has let the context go. NULL accepted. */
+void window_destroy(struct window **window);
+
+/* Readable when window_process_events() has something to do: events of the display server, else every 10 ms. */
+int window_get_event_fd(const struct window *window);
+void window_process_events(struct window *window);
+void window_toggle_fullscreen(struct window *window);
+/* The size of pictures: a window whose size nobody wished for takes it, as far as it fits the monitor. */
+void window_fit(struct window *window, uint32_t width, uint32_t height);
+
+/* ---- the drawing thread ---- */
+
+/* 0 or -EIO with a sentence. */
+int window_make_current(struct window *window, struct error *error);
+void window_let_go(struct window *window);
+/* Shows what was drawn; may wait for the display, long if the window cannot be seen. Nothing once it is lost. */
+void window_swap(struct window *window);
+typedef void (*window_function)(void);
+window_function window_find_function(const char *name);
+bool window_has_extension(const char *name);
+/* The Display and GLXDrawable of the X11 window if its context is one of GLX. False: it is not. */
+bool window_get_glx(struct window *window, void **display, unsigned long *drawable);
+
+#endif
