@@ -206,8 +206,11 @@ static bool take(struct render *render, uint64_t now_ns)
 		return false;
 	}
 	const struct pursuit_frame_header *header = &render->frame.header;
-	const struct pacer_frame frame = {header->frame_id, header->time_ns, header->real_interval_ns,
-									  render->frame.intake_ns};
+	const struct pacer_frame frame = {.frame_id = header->frame_id,
+									  .time_ns = header->time_ns,
+									  .interval_ns = header->real_interval_ns,
+									  .intake_ns = render->frame.intake_ns,
+									  .ready_ns = now_ns + render_real_cost(render)};
 	render->owner.record(render->owner.data, &render->frame);
 	pacer_add_frame(&render->pacer, &frame);
 	render->group++;

@@ -8,13 +8,9 @@
  * Vblanks lie on a grid (grid.h) that may change while their numbers go on, as
  * a display's true period and phase are learned (vblanks.h).
  *
- * phase = (target vblank - real frame's time - display delay) / T. The display
- * delay is one constant that the pacer learns, so that a steady client gets a
- * steady phase and the first showing of a real frame lies near phase 0: it
- * follows the median of (first vblank - frame's time) over the last frames, so
- * slowly (2 ms a second) that no motion is seen to speed up; ten times faster
- * when it is wrong by more than a quarter of a vblank, and at once when it is
- * wrong by more than two vblanks.
+ * phase = (target vblank - real frame's time - display delay) / T, with T of
+ * interval.h and the display delay of delay.h: constants for a steady client,
+ * so that it gets steady phases.
  *
  * N is predicted: the next real frame's time is this one's + T, and it is
  * expected at the first vblank that frames of that age could reach so far. So
@@ -28,9 +24,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "daemon/present/delay.h"
 #include "daemon/present/grid.h"
+#include "daemon/present/interval.h"
 
-#define PACER_HISTORY 32u
 /* A real frame's first showing is plain up to this |phase|. */
 #define PACER_PLAIN_PHASE 0.05
 
@@ -47,6 +44,7 @@ struct pacer_frame {
 	uint64_t time_ns;     /* the moment that it depicts */
 	uint64_t interval_ns; /* as the client declares, 0 unknown */
 	uint64_t intake_ns;   /* when the daemon saw it */
+	uint64_t ready_ns;    /* when its first picture is expected to be done; 0: as intake_ns */
 };
 
 enum pacer_show {
@@ -69,14 +67,12 @@ struct pacer_decision {
 struct pacer {
 	struct pacer_params params;
 	struct pacer_frame frame;      /* newest */
-	bool has_frame, frame_is_new;
-	uint64_t interval_ns;          /* T, smoothed over history; 0 unknown */
+	bool has_frame, frame_is_new, passes_through;
+	uint64_t interval_ns;          /* T; 0 unknown */
 	int64_t delay_ns;              /* display delay */
-	uint64_t intervals[PACER_HISTORY];
-	int64_t delays[PACER_HISTORY]; /* first vblank - frame's time */
-	uint32_t interval_count, delay_count; /* ever; the newest are kept */
+	struct interval interval;
+	struct delay delay;
 	uint64_t first_vblank;         /* of the newest real frame's first showing */
-	uint64_t tracked_ns;           /* when delay_ns was last moved */
 	uint32_t n;                    /* of the newest real frame, once shown */
 	double last_phase;
 };

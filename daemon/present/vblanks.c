@@ -88,7 +88,7 @@ static void fit(struct vblanks *v, uint64_t vblanks, uint64_t time_ns)
 	v->period_ns = limit(period + 6.0 / (n * (n + 1.0)) * settled / (double)vblanks, PERIOD_MIN_NS, PERIOD_MAX_NS);
 	move_base(v, 0, 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0)) * settled);
 	v->spread_ns += (fabs(off) - v->spread_ns) / fmin(n, 64.0);
-	v->bias_ns += (off - v->bias_ns) / 16.0;
+	v->bias_ns += (off - v->bias_ns) / 24.0;
 	if (v->memory > MEMORY_KNOWN && fabs(v->bias_ns) > 0.75 * spread) { /* it bends: forget what was */
 		v->memory = MEMORY_KNOWN / 2;
 		v->bias_ns = 0.0;

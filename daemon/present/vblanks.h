@@ -42,7 +42,7 @@ struct vblanks {
 	double rest_ns;
 	double period_ns;
 	double spread_ns;   /* mean distance of stamps from the line */
-	double bias_ns;     /* mean signed distance of the last dozen */
+	double bias_ns;     /* mean signed distance of the last two dozen */
 	uint32_t memory;    /* n of the gains */
 	uint32_t strays;    /* stamps off the line, in a row */
 	uint32_t backwards; /* stamps before the last one, in a row */

@@ -259,7 +259,7 @@ static void test_newest_wins_and_missed(void)
 	struct pacer_decision d = pacer_decide(&pacer, 3);
 	CHECK_INT(d.frame_id, 2);
 	pacer_missed(&pacer, &d);
-	CHECK_INT(pacer.delay_count, 0);
+	CHECK_INT(pacer.delay.count, 0);
 	d = pacer_decide(&pacer, 4);
 	CHECK_INT(d.show, PACER_REAL);
 	CHECK_INT(d.frame_id, 2);
@@ -315,6 +315,56 @@ static void test_slower_client_moves_the_delay_slowly(void)
 	CHECK(fastest < 8.333 * 0.08); /* 2% of three vblanks */
 }
 
+/* A steady client that now and then says an interval of 0, 1 us, 10 s or for ever, or repeats an old time. */
+static void test_odd_intervals(void)
+{
+	static const uint64_t odd[] = {0, 1, 1000, UINT64_C(10000000000), UINT64_MAX};
+	struct pacer pacer;
+	const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}};
+	pacer_init(&pacer, &params);
+	for (uint64_t i = 1; i <= 400; i++) {
+		const bool strange = i % 8 == 0, backwards = i % 40 == 20;
+		const struct pacer_frame frame = {.frame_id = i,
+										  .time_ns = (backwards ? i - 10 : i) * 16666667,
+										  .interval_ns = strange ? odd[i / 8 % 5] : 0,
+										  .intake_ns = i * 16666667 + 1000000};
+		pacer_add_frame(&pacer, &frame);
+		for (uint64_t k = 2 * i + 1; k < 2 * i + 3; k++) {
+			const struct pacer_decision d = pacer_decide(&pacer, k);
+			CHECK(isfinite(d.phase) && d.phase >= -1.0 && d.n >= 1 && d.n <= 8);
+			if (i > 12 && !backwards) {
+				CHECK_INT(d.show, k % 2 ? PACER_REAL : PACER_IN_BETWEEN);
+				CHECK_NEAR(d.phase, k % 2 ? 0.0 : 0.5, 0.03);
+			}
+		}
+		if (i > 12)
+			CHECK_NEAR((double)pacer.interval_ns, 1e9 / 60, 5e5);
+	}
+}
+
+/* Phases beyond 1, of a frame that nothing follows: up to the greatest one, and then the picture stays. */
+static void test_phase_beyond_one(void)
+{
+	static const double most[] = {0, 1, 3.5};
+	for (size_t i = 0; i < 3; i++) {
+		struct pacer pacer;
+		const struct pacer_params params = {.grid = {.numerator = 120, .denominator = 1}, .max_phase = most[i]};
+		const double expected = most[i] > 0 ? most[i] : 2.0;
+		pacer_init(&pacer, &params);
+		for (uint64_t id = 1; id <= 10; id++) {
+			feed(&pacer, id, id * 16666667);
+			pacer_decide(&pacer, 2 * id + 1);
+		}
+		for (uint64_t k = 22; k < 40; k++) {
+			const struct pacer_decision d = pacer_decide(&pacer, k);
+			const double phase = (double)(k - 21) / 2.0;
+			CHECK_NEAR(d.phase, phase, 1e-3);
+			CHECK_INT(d.show, phase <= expected && k < 29 ? PACER_IN_BETWEEN : PACER_REPEAT);
+			CHECK(d.last_phase <= expected);
+		}
+	}
+}
+
 static void test_nonsense(void)
 {
 	static const uint64_t times[] = {0, 1, UINT64_MAX, INT64_MAX, (uint64_t)INT64_MAX + 1, 5, 1000000000, 3};
@@ -349,6 +399,8 @@ int main(void)
 	RUN(test_newest_wins_and_missed);
 	RUN(test_fixed_delay);
 	RUN(test_slower_client_moves_the_delay_slowly);
+	RUN(test_odd_intervals);
+	RUN(test_phase_beyond_one);
 	RUN(test_nonsense);
 	return test_result();
 }
