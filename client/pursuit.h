@@ -197,15 +197,15 @@ struct pursuit_feedback_report {
 	uint64_t frame_id; /* as pursuit_submit() returned it */
 	uint64_t submit_ns;
 	uint64_t intake_ns;
-	uint64_t target_ns;
-	uint64_t ready_ns;
-	uint64_t flip_ns;
-	uint64_t vblank;
+	uint64_t target_ns; /* the vblank aimed at */
+	uint64_t ready_ns;  /* its picture was done */
+	uint64_t flip_ns;   /* it was first shown */
+	uint64_t vblank;    /* the number of that vblank */
 	enum pursuit_shown shown;
-	uint32_t vblanks;
-	uint32_t in_betweens;
-	uint32_t late_in_betweens;
-	uint64_t next_submit_ns;
+	uint32_t vblanks;          /* that it and its in-betweens filled */
+	uint32_t in_betweens;      /* of these, in-between frames */
+	uint32_t late_in_betweens; /* of these, vblanks whose in-between was not ready: plain, or the picture before */
+	uint64_t next_submit_ns;   /* the daemon's hint when this was written; pursuit_next_start() knows newer ones */
 };
 
 struct pursuit_stream;
@@ -249,6 +249,21 @@ PURSUIT_API void pursuit_cancel(struct pursuit_stream *stream, struct pursuit_fr
  * If the caller polls too rarely the oldest reports are lost, never the newest.
  */
 PURSUIT_API int pursuit_poll_feedback(struct pursuit_stream *stream, struct pursuit_feedback_report *report);
+
+/*
+ * When to begin the next frame so that it is submitted just in time for the vblank that the daemon expects it at: the
+ * least latency that the present rate allows. CLOCK_MONOTONIC ns; a moment that is over means at once. 0: unknown,
+ * since there is no daemon, it has not shown two frames yet, or shows nothing. The next frame is taken to begin at
+ * that moment, and what frames take from there to their submission is learned. Does not wait.
+ */
+PURSUIT_API uint64_t pursuit_next_start(struct pursuit_stream *stream);
+
+/*
+ * WAITS until pursuit_next_start(), at most timeout_ns and never longer than a quarter of a second. 1: it is that
+ * moment now. 0: it is not known (returns at once), the timeout came first, or the daemon went away. The rate stays
+ * what it was; a caller that wants another one paces itself until that is what it has.
+ */
+PURSUIT_API int pursuit_wait_next(struct pursuit_stream *stream, uint64_t timeout_ns);
 
 /* The state of the stream and its counters. */
 PURSUIT_API void pursuit_get_status(struct pursuit_stream *stream, struct pursuit_status *status);

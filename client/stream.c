@@ -12,7 +12,11 @@
 
 #include "client/attach.h"
 #include "client/feedback.h"
+#include "client/pace.h"
 #include "client/slots.h"
+
+#define SECOND_NS UINT64_C(1000000000)
+#define SLEEP_SLICE_NS UINT64_C(20000000)
 
 #define TEXT(value) #value
 #define VERSION(major, minor, patch) TEXT(major) "." TEXT(minor) "." TEXT(patch)
@@ -24,6 +28,7 @@ struct pursuit_stream {
 	struct shim_layout layout;
 	struct shim_attach attach;
 	struct shim_feedback feedback;
+	struct shim_pace pace;
 	struct shim_slots *plain;   /* always there */
 	struct shim_slots *shared;  /* only while attached */
 	struct shim_slots *retired; /* list: their daemon is gone, but frames of them are still acquired */
@@ -263,6 +268,7 @@ bool shim_stream_publish(struct pursuit_stream *stream, struct pursuit_frame *fr
 		give_back(stream, set, index);
 		return true;
 	}
+	shim_pace_publish(&stream->pace, ticket->frame_id, now_ns);
 	struct pursuit_frame_header header = make_header(stream, frame, ticket, now_ns);
 	publish_shared(stream, index, &header);
 	return true;
@@ -283,6 +289,49 @@ uint64_t pursuit_submit(struct pursuit_stream *stream, struct pursuit_frame *fra
 int pursuit_poll_feedback(struct pursuit_stream *stream, struct pursuit_feedback_report *report)
 {
 	return stream && report && stream->shared && shim_feedback_poll(&stream->feedback, stream->shared->control, report);
+}
+
+uint64_t pursuit_next_start(struct pursuit_stream *stream)
+{
+	if (!stream) {
+		return 0;
+	}
+	uint64_t now_ns = clock_now();
+	uint64_t next_id = stream->last_id + 1;
+	step(stream, now_ns);
+	uint64_t start_ns =
+		stream->shared ? shim_pace_start(&stream->pace, stream->shared->control, next_id, now_ns) : 0;
+	shim_pace_begin(&stream->pace, next_id, start_ns > now_ns ? start_ns : now_ns);
+	return start_ns;
+}
+
+/* Sleeps until then, whatever signals come; in slices, so that a daemon that goes away ends it. */
+static bool sleep_attached(struct pursuit_stream *stream, uint64_t until_ns)
+{
+	uint64_t now_ns = clock_now();
+
+	while (now_ns < until_ns && stream->shared) {
+		uint64_t slice_ns = until_ns - now_ns < SLEEP_SLICE_NS ? until_ns : now_ns + SLEEP_SLICE_NS;
+		const struct timespec then = {(time_t)(slice_ns / SECOND_NS), (long)(slice_ns % SECOND_NS)};
+		clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &then, NULL);
+		now_ns = clock_now();
+		step(stream, now_ns);
+	}
+	return now_ns >= until_ns;
+}
+
+int pursuit_wait_next(struct pursuit_stream *stream, uint64_t timeout_ns)
+{
+	uint64_t start_ns = pursuit_next_start(stream);
+
+	if (start_ns == 0) {
+		return 0;
+	}
+	uint64_t now_ns = clock_now();
+	bool in_time = start_ns <= now_ns || start_ns - now_ns <= timeout_ns;
+	bool slept = sleep_attached(stream, in_time ? start_ns : now_ns + timeout_ns);
+	shim_pace_begin(&stream->pace, stream->last_id + 1, clock_now());
+	return in_time && slept;
 }
 
 void pursuit_get_status(struct pursuit_stream *stream, struct pursuit_status *status)

@@ -218,10 +218,18 @@ static bool take(struct render *render, uint64_t now_ns)
 	return true;
 }
 
+/* A boosted picture must not stay for a second vblank: without boost where the plain one cannot be ready by then. */
+static uint32_t boost_over(const struct render *render, const struct pacer_decision *decision)
+{
+	const uint64_t ready_ns = clock_now(render->clock) + render->real_cost.usual_ns + render->plain_cost.safe_ns;
+	return ready_ns < decision->target_ns + (uint64_t)grid_period_ns(&render->grid) ? decision->n : 1;
+}
+
 static bool begin(struct render *render, const struct pacer_decision *decision)
 {
-	const struct engine_begin_params params = {
-		.n = decision->n, .last_phase = decision->last_phase, .real_interval_ns = decision->interval_ns};
+	const struct engine_begin_params params = {.n = boost_over(render, decision),
+											   .last_phase = decision->last_phase,
+											   .real_interval_ns = decision->interval_ns};
 	struct error error;
 	const int result = engine_begin(render->engine, &render->frame, &params, &error);
 	render->begun = render->report_due = result == 0;
@@ -268,14 +276,20 @@ static int queue_real(struct render *render, const struct presenter_image *image
 	return result;
 }
 
+/* When the next real frame had better be there: in time for the vblank that it is expected at. */
+static void give_hint(struct render *render, const struct pacer_decision *decision)
+{
+	const uint64_t next = pacer_next_real_vblank(&render->pacer);
+	const uint64_t lead = render_real_cost(render) + MS, vblank_ns = next ? grid_time(&render->grid, next) : 0;
+	render->showing.next_submit_ns = vblank_ns > lead ? vblank_ns - lead : 0;
+	stream_hint(render->stream, decision->frame_id, render->showing.next_submit_ns, decision->interval_ns);
+}
+
 /* What is known once the frame has its vblank. */
 static void settle_real(struct render *render, const struct pacer_decision *decision, uint64_t vblank)
 {
 	const struct engine_report *report = engine_get_report(render->engine);
 	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
-	const uint64_t next = pacer_next_real_vblank(&render->pacer);
-	const uint64_t lead = render_real_cost(render) + MS;
-
 	showing_plan(&render->showing, vblank, SHOWING_REAL);
 	render->n = decision->n;
 	render->real_vblank = vblank;
@@ -289,7 +303,7 @@ static void settle_real(struct render *render, const struct pacer_decision *deci
 	render->front_plain = !render->boosted && decision->phase == 0.0;
 	if (frame)
 		frame->boosted = render->boosted;
-	render->showing.next_submit_ns = next ? grid_time(&render->grid, next) - lead : 0;
+	give_hint(render, decision);
 }
 
 void draw_real(struct render *render, uint64_t now_ns)

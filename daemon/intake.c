@@ -254,3 +254,15 @@ void stream_feedback(struct stream *stream, const struct pursuit_feedback *repor
 	__atomic_store_n(&entry->sequence, 2 * number + 2, __ATOMIC_RELEASE);
 	__atomic_store_n(&stream->control->feedback_count, number + 1, __ATOMIC_RELEASE);
 }
+
+void stream_hint(struct stream *stream, uint64_t frame_id, uint64_t next_submit_ns, uint64_t interval_ns)
+{
+	struct pursuit_hint *hint = &stream->control->hint;
+	const uint64_t sequence = 2 * stream->hint_count++;
+	__atomic_store_n(&hint->sequence, sequence + 1, __ATOMIC_RELAXED);
+	__atomic_thread_fence(__ATOMIC_RELEASE);
+	__atomic_store_n(&hint->frame_id, frame_id, __ATOMIC_RELAXED);
+	__atomic_store_n(&hint->next_submit_ns, next_submit_ns, __ATOMIC_RELAXED);
+	__atomic_store_n(&hint->interval_ns, interval_ns, __ATOMIC_RELAXED);
+	__atomic_store_n(&hint->sequence, sequence + 2, __ATOMIC_RELEASE);
+}

@@ -9,8 +9,9 @@
  * memfds are sealed against shrinking (so no page inside can go away) and are
  * ordinary shared memory (a huge page that cannot be had would be a fault).
  *
- * Threads: created on main, then stream_take() and stream_feedback() belong to
- * one render thread at a time; whoever drops the last reference unmaps.
+ * Threads: created on main, then stream_take(), stream_feedback() and
+ * stream_hint() belong to one render thread at a time; whoever drops the last
+ * reference unmaps.
  */
 #ifndef PURSUIT_INTAKE_H
 #define PURSUIT_INTAKE_H
@@ -50,7 +51,7 @@ struct stream {
 	uint64_t slot_bytes;
 	uint32_t slot_count;
 	uint32_t held_slot;
-	uint64_t feedback_count;
+	uint64_t feedback_count, hint_count;
 	uint64_t last_id, last_time_ns;
 	struct log_limit log_limit; /* render thread */
 };
@@ -87,5 +88,8 @@ int stream_take(struct stream *stream, uint64_t now_ns, struct frame *frame, str
 
 /* Writes one report into the feedback ring; `sequence` and `reserved` are filled in. */
 void stream_feedback(struct stream *stream, const struct pursuit_feedback *report);
+
+/* Tells the client when the frame after `frame_id` is wanted, 0 unknown, and T. */
+void stream_hint(struct stream *stream, uint64_t frame_id, uint64_t next_submit_ns, uint64_t interval_ns);
 
 #endif

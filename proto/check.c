@@ -29,9 +29,11 @@ OFFSET(struct pursuit_frame_header, planes, 200, DISK);
 OFFSET(struct pursuit_frame_header, reserved, 776, DISK);
 
 SIZE(struct pursuit_feedback, 96, SHARED);
+SIZE(struct pursuit_hint, 32, SHARED);
 OFFSET(struct pursuit_shm_control, latest, 64, "the exchanged word has a cache line of its own");
 OFFSET(struct pursuit_shm_control, feedback_count, 128, "written by the daemon only, a line of its own");
 OFFSET(struct pursuit_shm_control, headers, 192, SHARED);
+OFFSET(struct pursuit_shm_control, hint, 136, SHARED);
 OFFSET(struct pursuit_shm_control, feedback, 8384, SHARED);
 SIZE(struct pursuit_shm_control, 16384, "four pages, mapped whole");
 

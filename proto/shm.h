@@ -75,6 +75,17 @@ struct pursuit_feedback {
 	uint64_t reserved;
 };
 
+/*
+ * When the daemon would like the next frame, written as soon as it knows: at the drawing of each real frame. 32 bytes.
+ * `sequence` rises by two with each hint and is odd while one is written; 0: there was none.
+ */
+struct pursuit_hint {
+	uint64_t sequence;       /* atomic */
+	uint64_t frame_id;       /* of the real frame that was drawn last */
+	uint64_t next_submit_ns; /* publish the frame after it by then, to be shown at the next vblank expected; 0: unknown */
+	uint64_t interval_ns;    /* T as the pacer knows it; 0: unknown */
+};
+
 /* The control page. 16384 bytes, mapped whole. */
 struct pursuit_shm_control {
 	uint32_t magic;
@@ -86,7 +97,8 @@ struct pursuit_shm_control {
 	uint32_t latest; /* atomic: slot index | PURSUIT_SLOT_FRESH; a cache line of its own */
 	uint32_t reserved2[15];
 	uint64_t feedback_count; /* atomic: reports written so far */
-	uint64_t reserved3[7];
+	struct pursuit_hint hint; /* written by the daemon */
+	uint64_t reserved3[3];
 	struct pursuit_frame_header headers[PURSUIT_MAX_SLOTS];
 	struct pursuit_feedback feedback[PURSUIT_FEEDBACK_ENTRIES];
 	uint8_t reserved4[1856];

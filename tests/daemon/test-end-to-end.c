@@ -115,6 +115,29 @@ static void test_two_seconds(void)
 	pursuit_close(&stream);
 }
 
+/* A game that begins each frame when the daemon says; it is told so, and nothing waits longer than it may. */
+static void test_waiting_for_the_next_frame(void)
+{
+	struct counts counts = {0};
+	struct pursuit_stream *stream = open_stream();
+	int told = 0;
+	CHECK(play_until_shown(stream, &counts));
+	play(stream, 5, &counts);
+	for (int i = 0; i < 3 * FPS; i++) {
+		struct pursuit_frame *frame = pursuit_acquire(stream);
+		if (frame) {
+			draw(frame, (uint64_t)i);
+			pursuit_submit(stream, frame);
+		}
+		poll_feedback(stream, &counts);
+		sleep_ms(5);
+		told += pursuit_wait_next(stream, 100000000);
+	}
+	CHECK(told > FPS / 2);
+	CHECK(counts.shown > FPS / 4);
+	pursuit_close(&stream);
+}
+
 static void test_client_is_killed(void)
 {
 	struct counts counts = {0};
@@ -185,6 +208,7 @@ int main(int argc, char **argv)
 	fixture_start(&fixture, arguments);
 	idle_fds = fixture_fewest_fds(&fixture);
 	RUN(test_two_seconds);
+	RUN(test_waiting_for_the_next_frame);
 	RUN(test_client_is_killed);
 	RUN(test_two_streams);
 	RUN(test_daemon_restarts);
