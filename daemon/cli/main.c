@@ -23,6 +23,7 @@ static const struct verb verbs[] = {
 	{"replay", verb_replay, "play a recording headless and deterministically, score it, compare it"},
 	{"import", verb_import, "make a recording from sequences of images"},
 	{"export", verb_export, "write the frames of a recording as images or video"},
+	{"check-stream", verb_check_stream, "find what is wrong with the motion, depth or times of a stream"},
 	{"status", verb_status, "say what a running daemon does"},
 	{NULL, NULL, NULL},
 };
@@ -32,7 +33,7 @@ static void print_help(FILE *out)
 	fprintf(out, "usage: pursuit VERB [arguments]\n\n"
 				 "Pursuit turns 30 to 60 rendered frames a second into a steady 120 Hz picture.\n\nverbs\n");
 	for (const struct verb *verb = verbs; verb->name; verb++)
-		fprintf(out, "  %-10s  %s\n", verb->name, verb->help);
+		fprintf(out, "  %-12s  %s\n", verb->name, verb->help);
 	fprintf(out, "\n`pursuit VERB --help` explains one, with examples. `pursuit --version` names the version.\n");
 }
 

@@ -35,24 +35,24 @@ static json_int_t number_of(const json_t *reply, const char *name)
 }
 
 /* Asks for the end and says what there is. */
-static int stop(struct control *control, const char *path, struct error *error)
+static int stop(struct control *control, const char *path, FILE *out, struct error *error)
 {
 	json_t *reply = NULL;
 	int result = control_ask(control, "record-stop", -1, &reply, error);
 	if (result < 0)
 		return result;
 	json_int_t frames = number_of(reply, "frames"), dropped = number_of(reply, "dropped");
-	printf("%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", path, frames, (double)number_of(reply, "bytes") / 1e6);
+	fprintf(out, "%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", path, frames, (double)number_of(reply, "bytes") / 1e6);
 	if (dropped)
-		printf(", %" JSON_INTEGER_FORMAT " frames dropped because the disk was slower", dropped);
-	printf("\n");
+		fprintf(out, ", %" JSON_INTEGER_FORMAT " frames dropped because the disk was slower", dropped);
+	fprintf(out, "\n");
 	if (frames == 0)
 		fprintf(stderr, "pursuit record: no frame came; does a client run? `pursuit status` says\n");
 	json_decref(reply);
 	return 0;
 }
 
-int record_daemon(const char *path, const char *socket, double seconds)
+int record_daemon(const char *path, const char *socket, double seconds, FILE *out)
 {
 	struct control control;
 	struct error error = {{0}};
@@ -69,7 +69,7 @@ int record_daemon(const char *path, const char *socket, double seconds)
 			if (isatty(STDERR_FILENO))
 				fprintf(stderr, "recording until %s\n", seconds > 0 ? "the time is over, or Ctrl-C" : "Ctrl-C");
 			wait_until_over(seconds);
-			result = stop(&control, path, &error);
+			result = stop(&control, path, out, &error);
 		}
 	}
 	control_close(&control);

@@ -5,7 +5,9 @@
 #ifndef PURSUIT_CLI_RECORD_DAEMON_H
 #define PURSUIT_CLI_RECORD_DAEMON_H
 
-/* seconds 0: until Ctrl-C. socket NULL: the usual one. Gives the exit status back. */
-int record_daemon(const char *path, const char *socket, double seconds);
+#include <stdio.h>
+
+/* seconds 0: until Ctrl-C. socket NULL: the usual one. What was written is said on `out`. Gives the exit status back. */
+int record_daemon(const char *path, const char *socket, double seconds, FILE *out);
 
 #endif

@@ -150,7 +150,7 @@ int verb_record(int argc, char **argv)
 	if (!read_options(&options, argc, argv, &status))
 		return status;
 	if (!options.scene)
-		return record_daemon(options.path, options.socket, options.seconds);
+		return record_daemon(options.path, options.socket, options.seconds, stdout);
 	if (options.seconds <= 0)
 		options.seconds = 2;
 	return record_scene(&options);

@@ -8,6 +8,7 @@
 #ifndef PURSUIT_CLI_VERBS_H
 #define PURSUIT_CLI_VERBS_H
 
+int verb_check_stream(int argc, char **argv);
 int verb_demo(int argc, char **argv);
 int verb_export(int argc, char **argv);
 int verb_import(int argc, char **argv);
