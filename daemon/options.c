@@ -11,6 +11,7 @@
 
 #define HELP_COLUMNS 120
 
+static const char *const motion_model_choices[] = {"linear", "quadratic", NULL};
 static const char *const blur_choices[] = {"doubtful", "everywhere", "off", NULL};
 static const char *const pattern_choices[] = {"toggle",      "pulse",   "pulse-real", "level-real",
 											  "three-lines", "counter", "sequence",   NULL};
@@ -56,6 +57,8 @@ static const struct option_row rows[] = {
 		 "How displayed frames are made from real ones. An unknown name is answered with the list."),
 	TEXT(context, "context", OPTION_ENGINE, "auto", "Where the engine runs: auto, egl, egl-device:INDEX or osmesa."),
 	FLAG(gles, "gles", OPTION_ENGINE, "no", "Use OpenGL ES 3.1 instead of OpenGL 4.3 core."),
+	CHOICE(motion_model, "motion-model", OPTION_ENGINE, "linear", motion_model_choices,
+		   "How the methods with a grid continue motion: straight on, or with its change since the frame before."),
 	CHOICE(blur, "blur", OPTION_ENGINE, "doubtful", blur_choices,
 		   "Where in-between frames are blurred: where the warp is doubtful, everywhere (the paper), or nowhere."),
 	FLAG(compensation, "compensation", OPTION_ENGINE, "yes",
@@ -406,6 +409,7 @@ int settings_engine_params(const struct settings *settings, struct engine_params
 	*params = (struct engine_params){
 		.gles = settings->gles,
 		.method = settings->method,
+		.motion_model = (enum engine_motion_model)settings->motion_model,
 		.blur = (enum engine_blur)settings->blur,
 		.no_compensation = !settings->compensation,
 		.cell = settings->cell,

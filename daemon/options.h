@@ -24,7 +24,8 @@ struct settings {
 	char method[32];
 	char context[32]; /* auto, egl, egl-device:I, osmesa */
 	bool gles;
-	uint32_t blur;       /* enum engine_blur */
+	uint32_t motion_model; /* enum engine_motion_model */
+	uint32_t blur;         /* enum engine_blur */
 	bool compensation;   /* default true */
 	uint32_t cell;
 	uint32_t blur_level;

@@ -31,6 +31,8 @@ static int apply_params(struct engine *engine, const struct engine_params *param
 	/* What another method kept is not the frame before. */
 	if (engine->method != method)
 		pixel_state_forget(&engine->pixels);
+	if (engine->method != method || resolved.motion_model == ENGINE_MOTION_LINEAR)
+		bend_forget(&engine->bend);
 	engine->params = resolved;
 	engine->method = method;
 	return 0;
@@ -42,6 +44,7 @@ static int prepare(struct engine *engine, struct error *error)
 	int result = warm_up(engine, error);
 	engine->begun = false;
 	pixel_state_forget(&engine->pixels);
+	bend_forget(&engine->bend);
 	report_begin(&engine->report, 0, engine->executor->ops->time_source(engine->executor));
 	return result;
 }
@@ -74,6 +77,7 @@ void engine_destroy(struct engine **engine)
 	executor_destroy(&gone->executor);
 	warp_mesh_finish(&gone->mesh);
 	pixel_state_finish(&gone->pixels);
+	bend_finish(&gone->bend);
 	plan_finish(&gone->plan);
 	free(gone);
 	*engine = NULL;

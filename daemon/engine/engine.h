@@ -38,6 +38,12 @@ enum engine_blur {
 	ENGINE_BLUR_OFF,
 };
 
+/* How motion is continued (docs/method.md, 10). Of the methods with a grid. */
+enum engine_motion_model {
+	ENGINE_MOTION_LINEAR = 0,
+	ENGINE_MOTION_QUADRATIC, /* with its change since the frame before */
+};
+
 enum engine_curve {
 	ENGINE_CURVE_SRGB = 0,
 	ENGINE_CURVE_GAMMA,
@@ -50,6 +56,7 @@ struct engine_params {
 	bool gles;          /* a GLES 3.1 context instead of GL 4.3 core */
 	const char *method; /* name; NULL: "pursuit" */
 	enum engine_blur blur;
+	enum engine_motion_model motion_model;
 	bool no_compensation;       /* E = c, B = mix */
 	uint32_t cell;              /* 4 to 64; 0: 8 */
 	uint32_t blur_level;        /* pyramid level of L, 1 to 6; 0: 2 */

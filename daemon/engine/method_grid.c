@@ -35,15 +35,14 @@ static bool depth_varies(const struct plan *plan)
 }
 
 /* The triangles for the GPU: merged where that changes nothing that could be seen. */
-static int make_mesh(struct engine *engine, struct error *error)
+static int make_mesh(struct engine *engine, double phase, struct error *error)
 {
+	if (engine->bend.bent)
+		bend_apply(&engine->bend, &engine->plan, phase);
 	engine->has_depth = depth_varies(&engine->plan);
 	/* Merging changes the drawing order. */
 	bool merge = engine->has_depth || !engine->plan.folded;
-	int result = warp_mesh_begin(&engine->mesh, &engine->plan, merge ? engine->method->tolerance : -1.0f, error);
-	if (result < 0)
-		return result;
-	return warp_mesh_sort_doubtful(&engine->mesh, engine->params.blur_level, error);
+	return warp_mesh_begin(&engine->mesh, &engine->plan, merge ? engine->method->tolerance : -1.0f, error);
 }
 
 int grid_begin(struct engine *engine, struct error *error)
@@ -59,7 +58,9 @@ int grid_begin(struct engine *engine, struct error *error)
 	note_plan(engine);
 	engine->levels_everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
 	engine->boost = method_boost(engine);
-	result = make_mesh(engine, error);
+	result = make_mesh(engine, engine->last_phase, error);
+	if (result == 0)
+		result = warp_mesh_sort_doubtful(&engine->mesh, engine->params.blur_level, error);
 	return result < 0 ? result : method_make_layers(engine, error);
 }
 
@@ -68,7 +69,9 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 {
 	bool tears = engine->params.blur != ENGINE_BLUR_OFF;
 	struct warp_mesh *mesh = &engine->mesh;
-	int result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
+	int result = engine->bend.bent ? make_mesh(engine, phase, error) : 0;
+	if (result == 0)
+		result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	/* Merged without a look at depths, since nothing folds at the last phase; but here it does. */
 	if (result == 0 && mesh->folds.count && !engine->plan.folded && mesh->count < engine->plan.index_count) {
 		result = warp_mesh_begin(mesh, &engine->plan, -1.0f, error);
@@ -78,7 +81,7 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 	if (result < 0 || (!mesh->torn.count && !mesh->folded_torn.count))
 		return result;
 	/* Stretch is convex in the phase: up to the last one, what is torn is also marked for blur. */
-	bool marked = phase >= 0.0 && phase <= engine->last_phase;
+	bool marked = engine->bend.bent ? phase == engine->last_phase : phase >= 0.0 && phase <= engine->last_phase;
 	if (engine->levels_made == LEVELS_ALL || (marked && engine->levels_made == LEVELS_MARKED))
 		return 0;
 	engine->levels_everywhere = !marked;

@@ -13,7 +13,10 @@ static int run(struct engine *engine, struct error *error)
 		.last_phase = (float)engine->last_phase,
 		.real_interval_ns = engine->real_interval_ns,
 	};
-	return plan_make(&engine->plan, engine->job.frame, &params, error);
+	int result = plan_make(&engine->plan, engine->job.frame, &params, error);
+	if (result == 0 && engine->params.motion_model == ENGINE_MOTION_QUADRATIC)
+		result = bend_begin(&engine->bend, engine->job.frame, &engine->plan, &params, error);
+	return result;
 }
 
 const struct pass pass_analyse = {.on_cpu = true, .run = run};

@@ -5,6 +5,7 @@
 #ifndef PURSUIT_ENGINE_STATE_H
 #define PURSUIT_ENGINE_STATE_H
 
+#include "daemon/engine/bend.h"
 #include "daemon/engine/bounds.h"
 #include "daemon/engine/convert.h"
 #include "daemon/engine/executor.h"
@@ -37,6 +38,7 @@ struct engine {
 	struct plan plan;
 	struct warp_mesh mesh;
 	struct pixel_state pixels;
+	struct bend bend; /* of the vertices, with the quadratic motion model */
 
 	/* The frame begun last. */
 	bool begun;

@@ -161,6 +161,7 @@ void reference_geometry_init(struct reference_geometry *geometry, const struct f
 	geometry->uy = reference_alloc(count, sizeof(double));
 	geometry->z = reference_alloc(count, sizeof(double));
 	fill_depth(geometry, frame);
+	geometry->known = !rests && header->motion_kind == PURSUIT_MOTION_BACKWARD;
 	if (rests)
 		return;
 	for (uint32_t j = 0; j < color->height; j++)

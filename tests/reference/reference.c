@@ -89,6 +89,14 @@ void reference_begin(struct reference *reference, const struct frame *frame, con
 	fill_pictures(reference);
 }
 
+void reference_bend(struct reference *reference, const struct reference *before)
+{
+	reference_grid_bend(&reference->grid, &reference->geometry, &before->geometry,
+						reference->timing.real_s / before->timing.real_s);
+	fill_weight(reference);
+	fill_pictures(reference);
+}
+
 void reference_finish(struct reference *reference)
 {
 	reference_geometry_finish(&reference->geometry);

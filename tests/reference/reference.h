@@ -74,6 +74,7 @@ struct reference_geometry {
 	double *ux, *uy, *z;
 	uint64_t invalid;
 	bool moves;     /* some u is not 0 */
+	bool known;     /* backward motion that was looked at */
 	bool has_depth; /* there is a depth plane; z is 0.5 without */
 };
 void reference_geometry_init(struct reference_geometry *geometry, const struct frame *frame,
@@ -84,6 +85,7 @@ void reference_geometry_finish(struct reference_geometry *geometry);
 
 struct reference_vertex {
 	double x, y, ux, uy, z;
+	double ax, ay; /* change of u [10], 0: linear */
 	bool snapped;
 	bool either; /* float and double may come to different vertices: a value lies at a boundary of a decision */
 };
@@ -106,6 +108,9 @@ uint32_t reference_discontinuity(const struct reference_geometry *geometry, uint
 								 double *gy);
 void reference_grid_init(struct reference_grid *grid, const struct reference_geometry *geometry, uint32_t cell,
 						 uint32_t threshold_quarter);
+/* Change of motion at the vertices from the frame before [10]; `ratio`: T / T'. */
+void reference_grid_bend(struct reference_grid *grid, const struct reference_geometry *now,
+						 const struct reference_geometry *before, double ratio);
 void reference_grid_finish(struct reference_grid *grid);
 /* Corner of a triangle at a phase, and its doubled signed area there. */
 void reference_displaced(const struct reference_grid *grid, const uint32_t v[3], double phase, double x[3],
@@ -171,6 +176,8 @@ struct reference {
 /* `reference` zeroed or begun before. Frame validated. Aborts without memory: it is a test. */
 void reference_begin(struct reference *reference, const struct frame *frame, const struct engine_params *params,
 					 const struct engine_begin_params *begin);
+/* The quadratic motion model [10]: `before` was begun with the frame before. After reference_begin(). */
+void reference_bend(struct reference *reference, const struct reference *before);
 void reference_finish(struct reference *reference);
 /* Phase of a request as it counts: NaN 0, -1 to 8; 0 for what is shown undisplaced. */
 double reference_phase(const struct engine_request *request);

@@ -258,6 +258,84 @@ static void test_interpolate_without_before(void)
 	pair_finish(&pair);
 }
 
+/* The frame before with motion a little other than now, as of things that turn. */
+static void turn(const struct input *input)
+{
+	const struct pursuit_frame_header *header = &input->frame.header;
+	const int index = frame_find_plane(header, PURSUIT_ROLE_MOTION);
+	const struct pursuit_plane *plane = &header->planes[index];
+	uint8_t *data = input->memory + (input->frame.planes[index] - input->memory);
+	for (uint32_t j = 0; j < plane->height; j++)
+		for (uint32_t i = 0; i < plane->width; i++) {
+			float m[2];
+			memcpy(m, data + j * plane->stride + i * sizeof(m), sizeof(m));
+			const float turned[2] = {0.95f * m[0] - 0.2f * m[1], 0.2f * m[0] + 0.95f * m[1]};
+			memcpy(data + j * plane->stride + i * sizeof(m), turned, sizeof(m));
+		}
+}
+
+static void check_bent(const struct input *before, const struct input *now, const struct engine_params *params,
+					   struct bounds_report *report)
+{
+	static const struct engine_request requests[] = {{ENGINE_SHOW_REAL, 0.0},
+													 {ENGINE_SHOW_IN_BETWEEN, 1.0 / 3},
+													 {ENGINE_SHOW_IN_BETWEEN, 2.0 / 3},
+													 {ENGINE_SHOW_REAL, 0.3}};
+	const struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
+	struct reference reference = {0}, previous = {0};
+	struct bounds bounds;
+	struct error error = {""};
+	CHECK_INT(engine_begin(engine, &before->frame, &begin, &error), 0);
+	CHECK_INT(engine_begin(engine, &now->frame, &begin, &error), 0);
+	reference_begin(&reference, &now->frame, params, &begin);
+	reference_begin(&previous, &before->frame, params, &begin);
+	reference_bend(&reference, &previous);
+	bounds_init(&bounds, &reference);
+	uint8_t *pixels = reference_alloc((size_t)reference.width * reference.height, 4);
+	for (size_t i = 0; i < 4; i++) {
+		struct engine_image image = {pixels, 4 * (size_t)reference.width};
+		CHECK_INT(engine_render(engine, &requests[i], &image, &error), 0);
+		bounds_compare(&bounds, &requests[i], pixels, image.stride, report);
+	}
+	CHECK_STRING(error.text, "");
+	free(pixels);
+	bounds_finish(&bounds);
+	reference_finish(&reference);
+	reference_finish(&previous);
+}
+
+static void test_quadratic(void)
+{
+	struct bounds_report all = {0};
+	for (size_t f = 0; f < FIELDS; f++) {
+		struct input before, now;
+		struct error error = {""};
+		struct bounds_report report = {0};
+		const struct input_spec spec = {
+			.width = 130, .height = 84, .field = fields[f], .image = f % 3, .seed = 3 + f, .no_depth = f == 3};
+		const struct engine_params params = {.method = "grid",
+											 .motion_model = ENGINE_MOTION_QUADRATIC,
+											 .blur = f % 2 ? ENGINE_BLUR_DOUBTFUL : ENGINE_BLUR_EVERYWHERE,
+											 .display_width_mm = input_display_mm(spec.width)};
+		input_make(&before, &spec);
+		input_make(&now, &spec);
+		turn(&before);
+		CHECK_INT(engine_set_params(engine, &(struct engine_params){.method = "hold"}, &error), 0);
+		CHECK_INT(engine_set_params(engine, &params, &error), 0);
+		check_bent(&before, &now, &params, &report);
+		if (report.outside)
+			fprintf(stderr, "quadratic, field %zu: %llu pixels outside, worst by %.2f steps at (%u, %u)\n", f,
+					(unsigned long long)report.outside, report.worst, report.worst_x, report.worst_y);
+		CHECK_INT(report.outside, 0);
+		all.pixels += report.pixels;
+		all.excused += report.excused;
+		input_finish(&before);
+		input_finish(&now);
+	}
+	printf("quadratic: %.5f of the pixels excused\n", (double)all.excused / (double)all.pixels);
+	CHECK((double)all.excused <= 0.02 * (double)all.pixels);
+}
+
 static void test_lag_is_told(void)
 {
 	for (const struct engine_method_info *info = engine_methods(); info->name; info++)
@@ -277,6 +355,7 @@ int main(int argc, char **argv)
 	RUN(test_scatter);
 	RUN(test_interpolate);
 	RUN(test_interpolate_without_before);
+	RUN(test_quadratic);
 	RUN(test_lag_is_told);
 	printf("%.5f of the pixels open\n", open_pixels / all_pixels);
 	CHECK(open_pixels / all_pixels < MOST_OPEN);
