@@ -86,7 +86,7 @@ static const struct option_row rows[] = {
 	TEXT(connector, "connector", OPTION_OUTPUT, "",
 		 "kms: connector like HDMI-A-1 or DP-2; empty: the first one that a display is plugged into."),
 	TEXT(mode, "mode", OPTION_OUTPUT, "",
-		 "kms: mode like 1920x1080@120; empty: the display's preferred size at the rate nearest to --refresh."),
+		 "kms: mode like 1920x1080@120; empty: the rate nearest to --refresh, then the preferred size."),
 	TEXT(kms_device, "kms-device", OPTION_OUTPUT, "",
 		 "kms: device like /dev/dri/card1; empty: the first one that has a display."),
 	FLAG(lab.latency, "latency", OPTION_LAB, "no", "Keep all time points of each displayed frame for pursuit latency."),

@@ -210,11 +210,22 @@ static int start_lab(struct pursuitd *daemon, struct error *error)
 	return daemon->lab ? 0 : -1;
 }
 
+/* A presenter on a console of its own reads these from a descriptor (kms_console.h); no thread exists yet. */
+static void block_console_signals(void)
+{
+	sigset_t set;
+	sigemptyset(&set);
+	sigaddset(&set, SIGUSR1);
+	sigaddset(&set, SIGUSR2);
+	pthread_sigmask(SIG_BLOCK, &set, NULL);
+}
+
 static int start(struct pursuitd *daemon, struct error *error)
 {
 	static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN); /* a file size limit is met like a full disk */
+	block_console_signals();
 	raise_priority(&daemon->log);
 	clock_init_real(&daemon->clock);
 	daemon->loop = loop_create(error);

@@ -37,7 +37,7 @@ MAY_INCLUDE = {
 ENGINE_FACES = ("daemon/engine/engine.h", "daemon/engine/plan.h", "daemon/engine/motion_order.h",
                 "daemon/engine/analysis/compose.h")
 # system headers that stand behind one file of the product (examples and tests are free)
-ONE_FILE = ("gpiod.h", "GLFW/glfw3.h", "xf86drm.h")
+ONE_FILE = ("gpiod.h", "GLFW/glfw3.h", "xf86drm.h", "xf86drmMode.h")
 # pure arithmetic: no GL, no socket, no clock
 PURE = ("daemon/present/pacer.", "daemon/measure/")
 IMPURE = re.compile(r"^(EGL|GL|GLES\d)/|^sys/(socket|epoll|eventfd|timerfd|time)\.h$|^(time|pthread|unistd)\.h$")

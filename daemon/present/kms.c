@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/present/kms.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include "daemon/present/kms_hotplug.h"
+
+#define MS UINT64_C(1000000)
+/* The kernel takes a flip so long before the display's blank begins; at most a quarter of a vblank. */
+#define GUARD_NS (MS + MS / 5)
+/* Made before the first picture; more as they are needed. */
+#define FIRST_BUFFERS 3u
+/* Rows begin at a multiple of 64 bytes. */
+#define COLUMNS 16u
+#define STACK_BYTES ((size_t)256 * 1024)
+
+static struct kms *self_of(struct presenter *presenter)
+{
+	return (struct kms *)presenter;
+}
+
+/* ---- life ---- */
+
+static struct kms_device *open_device(const struct presenter_params *params, struct error *error)
+{
+	struct kms_device_params device = {.device = params->options.device, .connector = params->options.connector};
+	if (params->refresh_denominator)
+		device.mode.refresh_hz = (double)params->refresh_numerator / (double)params->refresh_denominator;
+	if (kms_mode_parse(params->options.mode, &device.mode, error) < 0)
+		return NULL;
+	return kms_device_create(&device, error);
+}
+
+static int light_up(struct kms *kms, struct error *error)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	uint64_t numerator, denominator;
+	int result = kms_device_create_buffer(kms->device, &kms->backdrop, error);
+	for (uint32_t i = 0; i < FIRST_BUFFERS && result == 0; i++)
+		result = kms_device_create_buffer(kms->device, &kms->pictures[i].buffer, error);
+	if (result == 0)
+		result = kms_device_show(kms->device, &kms->backdrop, error);
+	if (result < 0)
+		return result;
+	kms_mode_refresh(mode, &numerator, &denominator);
+	vblanks_init(&kms->vblanks, numerator, denominator, clock_now(kms->params.clock));
+	kms->grid = vblanks_get_grid(&kms->vblanks);
+	const uint64_t period_ns = (uint64_t)grid_period_ns(&kms->grid);
+	kms->guard_ns = kms_mode_blank_ns(mode) + GUARD_NS;
+	if (kms->guard_ns > period_ns / 4)
+		kms->guard_ns = period_ns / 4;
+	result = kms_anchor(kms);
+	return result == 0 ? 0
+					   : error_set(error, result, "kms: %s counts no vblanks (%s); use --present glfw or headless",
+								   kms_device_get_name(kms->device), strerror(-result));
+}
+
+static void take_down(struct kms *kms)
+{
+	if (kms->device) {
+		/* First what was there before, so that the display does not go dark in between. */
+		kms_device_restore(kms->device);
+		for (uint32_t i = 0; i < FLIPS_IMAGES; i++)
+			kms_device_destroy_buffer(kms->device, &kms->pictures[i].buffer);
+		kms_device_destroy_buffer(kms->device, &kms->backdrop);
+	}
+	kms_device_destroy(&kms->device);
+	kms_console_finish(&kms->console);
+	if (kms->hotplug >= 0)
+		close(kms->hotplug);
+	if (kms->wake >= 0)
+		close(kms->wake);
+	pthread_mutex_destroy(&kms->lock);
+	free(kms);
+}
+
+/* With a stack so small that it can be locked. */
+static int start_thread(struct kms *kms)
+{
+	pthread_attr_t attributes;
+	pthread_attr_init(&attributes);
+	pthread_attr_setstacksize(&attributes, STACK_BYTES);
+	const int code = pthread_create(&kms->thread, &attributes, kms_run, kms);
+	pthread_attr_destroy(&attributes);
+	return code;
+}
+
+static int start(struct kms *kms, struct error *error)
+{
+	kms->wake = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+	if (kms->wake < 0)
+		return error_set(error, -errno, "kms: eventfd: %s", strerror(errno));
+	kms->device = open_device(&kms->params, error);
+	if (!kms->device)
+		return -ENODEV;
+	const int result = light_up(kms, error);
+	if (result < 0)
+		return result;
+	kms->hotplug = kms_hotplug_open();
+	kms_console_init(&kms->console, kms->params.log);
+	const int code = start_thread(kms);
+	return code == 0 ? 0 : error_set(error, -code, "kms: cannot start a thread: %s", strerror(code));
+}
+
+static struct presenter *kms_create(const struct presenter_params *params, struct error *error)
+{
+	struct kms *kms = calloc(1, sizeof(*kms));
+	char mode[48];
+	if (!kms) {
+		error_set(error, -ENOMEM, "kms: out of memory");
+		return NULL;
+	}
+	kms->presenter.impl = &presenter_kms;
+	kms->params = *params;
+	kms->hotplug = kms->wake = -1;
+	kms->console = (struct kms_console){-1, -1};
+	pthread_mutex_init(&kms->lock, NULL);
+	if (start(kms, error) < 0) {
+		take_down(kms);
+		return NULL;
+	}
+	kms_mode_print(kms_device_get_mode(kms->device), mode, sizeof(mode));
+	log_info(params->log, "kms: %s on %s", mode, kms_device_get_name(kms->device));
+	return &kms->presenter;
+}
+
+static void kms_destroy(struct presenter *presenter)
+{
+	struct kms *kms = self_of(presenter);
+	const uint64_t one = 1;
+	pthread_mutex_lock(&kms->lock);
+	kms->stop = true;
+	pthread_mutex_unlock(&kms->lock);
+	if (write(kms->wake, &one, sizeof(one)) < 0)
+		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
+	pthread_join(kms->thread, NULL);
+	take_down(kms);
+}
+
+/* ---- pictures ---- */
+
+/* The picture lies in the middle. */
+static void place(struct kms *kms, struct kms_picture *picture, uint32_t width, uint32_t height,
+				  struct presenter_image *image)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	const size_t x = (mode->width - width) / 2 / COLUMNS * COLUMNS, y = (mode->height - height) / 2;
+	if (picture->width != width || picture->height != height)
+		memset(picture->buffer.data, 0, picture->buffer.size);
+	picture->width = image->width = width;
+	picture->height = image->height = height;
+	image->stride = picture->buffer.stride;
+	image->data = picture->buffer.data + y * picture->buffer.stride + x * 4;
+}
+
+static int refuse_size(struct kms *kms, uint32_t width, uint32_t height)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	if (kms->refused_width != width || kms->refused_height != height)
+		log_error(kms->params.log,
+				  "kms: a picture of %ux%u is larger than the display (%ux%u) and is not shown; use a larger --mode or "
+				  "smaller frames",
+				  width, height, mode->width, mode->height);
+	kms->refused_width = width;
+	kms->refused_height = height;
+	return -E2BIG;
+}
+
+static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
+{
+	struct kms *kms = self_of(presenter);
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	struct error error;
+
+	if (width > mode->width || height > mode->height)
+		return refuse_size(kms, width, height);
+	pthread_mutex_lock(&kms->lock);
+	const int index = flips_acquire(&kms->scanout.flips);
+	pthread_mutex_unlock(&kms->lock);
+	if (index < 0)
+		return -EBUSY;
+	struct kms_picture *picture = &kms->pictures[index];
+	image->index = (uint32_t)index;
+	if (!picture->buffer.data && kms_device_create_buffer(kms->device, &picture->buffer, &error) < 0) {
+		log_warning(kms->params.log, "%s", error.text);
+		presenter->impl->release(presenter, image);
+		return -ENOMEM;
+	}
+	place(kms, picture, width, height, image);
+	return 0;
+}
+
+static void kms_release(struct presenter *presenter, const struct presenter_image *image)
+{
+	struct kms *kms = self_of(presenter);
+	pthread_mutex_lock(&kms->lock);
+	flips_release(&kms->scanout.flips, image->index);
+	pthread_mutex_unlock(&kms->lock);
+}
+
+/* The kernel has no picture for this vblank yet and can still take one. */
+static bool is_open(const struct kms *kms, uint64_t vblank, uint64_t now_ns)
+{
+	const struct scanout *scanout = &kms->scanout;
+	return now_ns < grid_time(&kms->grid, vblank) && vblank > kms->number && vblank >= scanout->next_vblank &&
+		   !(scanout->under_way.any && scanout->under_way_vblank >= vblank);
+}
+
+static int kms_present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank,
+					   uint64_t group, uint64_t serial)
+{
+	struct kms *kms = self_of(presenter);
+	int result = -ETIME;
+
+	pthread_mutex_lock(&kms->lock);
+	if (!kms->running && !kms->lost && clock_now(kms->params.clock) < grid_time(&kms->grid, vblank))
+		kms_start(kms, vblank);
+	const uint64_t now_ns = clock_now(kms->params.clock);
+	if (kms->lost)
+		result = -ENODEV;
+	else if (kms->running && is_open(kms, vblank, now_ns))
+		result = flips_present(&kms->scanout.flips, image->index, vblank, group, serial) ? 0 : -EBUSY;
+	/* The event thread has found nothing for it. */
+	if (result == 0 && vblank == kms->chosen && !kms->away)
+		kms_choose(kms, vblank);
+	pthread_mutex_unlock(&kms->lock);
+	return result;
+}
+
+static void kms_set_standby(struct presenter *presenter, const struct presenter_image *image, uint64_t group,
+							uint64_t serial)
+{
+	struct kms *kms = self_of(presenter);
+	pthread_mutex_lock(&kms->lock);
+	flips_set_standby(&kms->scanout.flips, image->index, group, serial);
+	pthread_mutex_unlock(&kms->lock);
+}
+
+static void kms_clear_standby(struct presenter *presenter)
+{
+	struct kms *kms = self_of(presenter);
+	pthread_mutex_lock(&kms->lock);
+	flips_clear_standby(&kms->scanout.flips);
+	pthread_mutex_unlock(&kms->lock);
+}
+
+static void kms_pause(struct presenter *presenter)
+{
+	struct kms *kms = self_of(presenter);
+	pthread_mutex_lock(&kms->lock);
+	kms->running = false;
+	pthread_mutex_unlock(&kms->lock);
+}
+
+static struct grid kms_get_grid(struct presenter *presenter)
+{
+	struct kms *kms = self_of(presenter);
+	pthread_mutex_lock(&kms->lock);
+	const struct grid grid = kms->grid;
+	pthread_mutex_unlock(&kms->lock);
+	return grid;
+}
+
+static uint64_t kms_get_lead(struct presenter *presenter)
+{
+	struct kms *kms = self_of(presenter);
+	pthread_mutex_lock(&kms->lock);
+	const uint64_t lead_ns = kms->away ? 0 : kms->guard_ns;
+	pthread_mutex_unlock(&kms->lock);
+	return lead_ns;
+}
+
+const struct presenter_impl presenter_kms = {
+	.name = "kms",
+	.description = "a display without any compositor: pictures scanned out by the kernel's display controller",
+	.create = kms_create,
+	.destroy = kms_destroy,
+	.get_grid = kms_get_grid,
+	.get_lead = kms_get_lead,
+	.acquire = kms_acquire,
+	.release = kms_release,
+	.present = kms_present,
+	.set_standby = kms_set_standby,
+	.clear_standby = kms_clear_standby,
+	.pause = kms_pause,
+};

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The insides of the KMS presenter: a display controller of its own, without
+ * any compositor. kms.c is the presenter's face, on the render thread;
+ * kms_events.c is the thread that waits for the kernel.
+ *
+ * The way of a picture: it is drawn straight into a buffer that the controller
+ * can scan out, queued, and given to the kernel `guard_ns` before its vblank:
+ * late enough that a real frame can still replace an in-between, early enough
+ * for the kernel to have it done. If there is none by then, one that comes
+ * before the vblank goes straight to the kernel. Two events come back: the
+ * vblank (asked for one at a time, time stamp in ns) and the flip.
+ *
+ * While another console is on display, vblanks are counted by the clock and
+ * pictures go nowhere, so that client and engine notice nothing.
+ */
+#ifndef PURSUIT_KMS_H
+#define PURSUIT_KMS_H
+
+#include <pthread.h>
+
+#include "daemon/present/kms_console.h"
+#include "daemon/present/kms_device.h"
+#include "daemon/present/presenter.h"
+#include "daemon/present/scanout.h"
+#include "daemon/present/vblanks.h"
+
+#define KMS_REPORTS 16u
+
+struct kms_picture {
+	struct kms_buffer buffer;
+	uint32_t width, height; /* of what was drawn into it; the rest is black */
+};
+
+struct kms {
+	struct presenter presenter;
+	struct presenter_params params;
+	struct kms_device *device;
+	struct kms_console console;
+	int hotplug, wake;  /* -1: none */
+	uint64_t guard_ns;
+	struct kms_buffer backdrop; /* black: before the first picture */
+	pthread_t thread;
+
+	pthread_mutex_t lock; /* for all below */
+	struct scanout scanout;
+	struct vblanks vblanks;
+	struct grid grid;
+	uint64_t number, sequence; /* of the newest vblank: ours, the kernel's */
+	uint64_t chosen;           /* the newest vblank that a picture was looked for */
+	bool running, stop, away, lost;
+	struct kms_picture pictures[FLIPS_IMAGES]; /* of an acquired one: the render thread's */
+	uint32_t refused_width, refused_height;    /* said already */
+
+	/* the event thread's own */
+	struct presenter_flip reports[KMS_REPORTS];
+	uint32_t report_count;
+	uint64_t heard_ns, checked_ns;
+	struct error loss;
+};
+
+/* All with the lock. */
+
+/* Looks for the picture of this vblank, which is close, and flips to it. */
+void kms_choose(struct kms *kms, uint64_t vblank);
+/* Vblanks come from now on, reported from this one on. */
+void kms_start(struct kms *kms, uint64_t vblank);
+/* Takes number and phase of vblanks anew from the kernel. Negative errno: it does not know them. */
+int kms_anchor(struct kms *kms);
+/* The display is gone; said once, by the event thread. */
+void kms_lose(struct kms *kms, const char *why);
+
+/* The event thread; ends when `stop` is set and `wake` written. */
+void *kms_run(void *kms);
+
+#endif

@@ -1,0 +1,288 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include <errno.h>
+#include <poll.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include "daemon/present/kms.h"
+#include "daemon/present/kms_hotplug.h"
+
+#define SECOND UINT64_C(1000000000)
+/* The cable is looked at so often where the kernel sends no message. */
+#define CHECK_NS SECOND
+/* A display that says nothing for so long is dead. */
+#define SILENCE_NS (2 * SECOND)
+
+static uint64_t now_of(const struct kms *kms)
+{
+	return clock_now(kms->params.clock);
+}
+
+static void keep_reports(struct kms *kms, const struct presenter_flip *reports, uint32_t count)
+{
+	for (uint32_t i = 0; i < count && kms->running && kms->report_count < KMS_REPORTS; i++)
+		kms->reports[kms->report_count++] = reports[i];
+}
+
+void kms_lose(struct kms *kms, const char *why)
+{
+	const uint64_t one = 1;
+	if (kms->lost)
+		return;
+	kms->lost = true;
+	kms->running = false;
+	error_set(&kms->loss, -ENODEV, "kms: %s: %s", kms_device_get_name(kms->device), why);
+	if (write(kms->wake, &one, sizeof(one)) < 0)
+		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
+}
+
+/* ---- vblanks ---- */
+
+int kms_anchor(struct kms *kms)
+{
+	uint64_t sequence, time_ns;
+	const int result = kms_device_get_sequence(kms->device, &sequence, &time_ns);
+	if (result < 0)
+		return result;
+	if (sequence != kms->sequence && time_ns != 0) {
+		kms->number = vblanks_add(&kms->vblanks, sequence, time_ns);
+		kms->sequence = sequence;
+		kms->grid = vblanks_get_grid(&kms->vblanks);
+	}
+	kms->heard_ns = now_of(kms);
+	return kms_device_queue_sequence(kms->device, sequence + 1);
+}
+
+void kms_start(struct kms *kms, uint64_t vblank)
+{
+	const uint64_t one = 1;
+	kms->running = true;
+	scanout_start(&kms->scanout, vblank);
+	if (!kms->away && kms_anchor(kms) < 0)
+		kms_lose(kms, "it counts no vblanks any more");
+	if (kms->away)
+		kms->number = grid_at_or_after(&kms->grid, now_of(kms) + 1) - 1;
+	if (write(kms->wake, &one, sizeof(one)) < 0)
+		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
+}
+
+void kms_choose(struct kms *kms, uint64_t vblank)
+{
+	const int image = scanout_choose(&kms->scanout, vblank);
+	kms->chosen = vblank;
+	if (image < 0)
+		return;
+	const int result = kms_device_flip(kms->device, &kms->pictures[image].buffer);
+	if (result == 0)
+		return;
+	scanout_failed(&kms->scanout);
+	if (result == -EBUSY || result == -EAGAIN || result == -EINTR)
+		return;
+	kms_lose(kms, result == -EACCES || result == -EPERM ? "another program has taken the display" : strerror(-result));
+}
+
+static void on_vblank(void *data, uint64_t sequence, uint64_t time_ns)
+{
+	struct kms *kms = data;
+	struct presenter_flip reports[2];
+
+	if (sequence == kms->sequence || kms->away)
+		return;
+	kms->number = vblanks_add(&kms->vblanks, sequence, time_ns);
+	kms->sequence = sequence;
+	kms->heard_ns = now_of(kms);
+	const struct presenter_flip flip = {
+		.vblank = kms->number,
+		/* Before this stamp has moved the grid: the time that was aimed at. */
+		.target_ns = grid_time(&kms->grid, kms->number),
+		.flip_ns = time_ns,
+		.sequence = sequence,
+		.time_source = PRESENTER_TIME_KERNEL,
+	};
+	kms->grid = vblanks_get_grid(&kms->vblanks);
+	if (!kms->running)
+		return;
+	keep_reports(kms, reports, scanout_vblank(&kms->scanout, &flip, reports));
+	if (kms_device_queue_sequence(kms->device, sequence + 1) < 0)
+		kms_lose(kms, "it counts no vblanks any more");
+}
+
+static void on_flipped(void *data, uint64_t sequence)
+{
+	struct kms *kms = data;
+	struct presenter_flip reports[2];
+	/* The kernel's flips carry the lower half of the count. */
+	const int32_t ahead = (int32_t)((uint32_t)sequence - (uint32_t)kms->sequence);
+	keep_reports(kms, reports, scanout_flipped(&kms->scanout, kms->number + (uint64_t)(int64_t)ahead, reports));
+}
+
+/* While another console is on display: nobody sees it. */
+static void tick(struct kms *kms)
+{
+	struct presenter_flip reports[2];
+	const uint64_t vblank = kms->number + 1;
+	const struct presenter_flip flip = {.vblank = vblank,
+										.target_ns = grid_time(&kms->grid, vblank),
+										.flip_ns = now_of(kms),
+										.time_source = PRESENTER_TIME_TIMER};
+	kms->number = kms->chosen = vblank;
+	if (scanout_choose(&kms->scanout, vblank) >= 0)
+		keep_reports(kms, reports, scanout_flipped(&kms->scanout, vblank, reports));
+	keep_reports(kms, reports, scanout_vblank(&kms->scanout, &flip, reports));
+}
+
+/* ---- changes from outside ---- */
+
+static void leave(struct kms *kms)
+{
+	log_info(kms->params.log, "kms: another console is on display; going on unseen");
+	kms_device_leave(kms->device);
+	kms_console_left(&kms->console);
+	kms->away = true;
+}
+
+static void come_back(struct kms *kms)
+{
+	const struct scanout *scanout = &kms->scanout;
+	const struct kms_buffer *buffer = scanout->shown.any ? &kms->pictures[scanout->shown.image].buffer : &kms->backdrop;
+	struct error error;
+
+	if (!kms->away)
+		return;
+	if (kms_device_return(kms->device) < 0)
+		kms_lose(kms, "another program has taken the display");
+	else if (kms_device_show(kms->device, buffer, &error) < 0)
+		kms_lose(kms, error.text);
+	kms->away = false;
+	if (kms->lost || (kms->running && kms_anchor(kms) < 0))
+		kms_lose(kms, "it counts no vblanks any more");
+	log_info(kms->params.log, "kms: back on display");
+}
+
+static void check_cable(struct kms *kms, bool told)
+{
+	const uint64_t now_ns = now_of(kms);
+	if (!told && now_ns < kms->checked_ns + CHECK_NS)
+		return;
+	kms->checked_ns = now_ns;
+	if (!kms->lost && !kms_device_is_connected(kms->device, told))
+		kms_lose(kms, "the display was unplugged");
+}
+
+/* ---- the thread ---- */
+
+static bool is_to_choose(const struct kms *kms, uint64_t vblank)
+{
+	return kms->chosen < vblank && vblank >= kms->scanout.next_vblank;
+}
+
+static void act_on_time(struct kms *kms)
+{
+	const uint64_t now_ns = now_of(kms), next = kms->number + 1, time_ns = grid_time(&kms->grid, next);
+	if (!kms->running)
+		return;
+	if (kms->away && now_ns >= time_ns)
+		tick(kms);
+	else if (!kms->away && is_to_choose(kms, next) && now_ns + kms->guard_ns >= time_ns)
+		kms_choose(kms, next);
+	if (!kms->away && now_ns > kms->heard_ns + SILENCE_NS)
+		kms_lose(kms, "it sends no vblanks any more");
+}
+
+/* When there is something to do even if nobody says anything. */
+static uint64_t next_time(const struct kms *kms)
+{
+	const uint64_t check_ns = kms->checked_ns + CHECK_NS, next = kms->number + 1;
+	uint64_t time_ns = grid_time(&kms->grid, next);
+	if (!kms->running || (!kms->away && !is_to_choose(kms, next)))
+		return check_ns;
+	if (!kms->away)
+		time_ns -= kms->guard_ns;
+	return time_ns < check_ns ? time_ns : check_ns;
+}
+
+/* What the descriptors say; with the lock. */
+static void act(struct kms *kms, const struct pollfd *fds)
+{
+	const struct kms_events events = {on_vblank, on_flipped, kms};
+	uint64_t count;
+	if (fds[0].revents && kms_device_read_events(kms->device, &events) < 0 && errno != EAGAIN && errno != EINTR)
+		kms_lose(kms, strerror(errno));
+	if (fds[1].revents && read(kms->wake, &count, sizeof(count)) < 0)
+		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
+	check_cable(kms, fds[2].revents && kms_hotplug_read(kms->hotplug));
+	if (fds[3].revents) {
+		const enum kms_console_event event = kms_console_read(&kms->console);
+		if (event == KMS_CONSOLE_LEAVE)
+			leave(kms);
+		else if (event == KMS_CONSOLE_RETURN)
+			come_back(kms);
+	}
+	act_on_time(kms);
+}
+
+/* Gives reports and the loss to the user, without the lock. */
+static void tell(struct kms *kms, bool *told_loss)
+{
+	for (uint32_t i = 0; i < kms->report_count; i++)
+		kms->params.flip(kms->params.data, &kms->reports[i]);
+	kms->report_count = 0;
+	if (!*told_loss && kms->loss.text[0]) {
+		*told_loss = true;
+		if (kms->params.lost)
+			kms->params.lost(kms->params.data, kms->loss.text);
+	}
+}
+
+/* What it measures is the display, and it runs for microseconds a vblank. Not permitted to most. */
+static void prepare_thread(const struct kms *kms)
+{
+	const struct sched_param priority = {.sched_priority = 1};
+	pthread_attr_t attributes;
+	void *stack;
+	size_t size;
+
+	pthread_setname_np(pthread_self(), "pursuit-flip");
+	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
+	if (pthread_setschedparam(pthread_self(), SCHED_RR, &priority) != 0)
+		log_info(kms->params.log,
+				 "kms: flips without real-time priority (RLIMIT_RTPRIO is 0); a busy machine may miss some");
+	const bool known = pthread_getattr_np(pthread_self(), &attributes) == 0;
+	if (known && pthread_attr_getstack(&attributes, &stack, &size) == 0 &&
+		(mlock(kms, sizeof(*kms)) != 0 || mlock(stack, size) != 0))
+		log_info(kms->params.log,
+				 "kms: flips without locked memory (RLIMIT_MEMLOCK); a machine short of it may miss some");
+	if (known)
+		pthread_attr_destroy(&attributes);
+}
+
+void *kms_run(void *data)
+{
+	struct kms *kms = data;
+	struct pollfd fds[4] = {{kms_device_get_fd(kms->device), POLLIN, 0},
+							{kms->wake, POLLIN, 0},
+							{kms->hotplug, POLLIN, 0},
+							{kms_console_get_fd(&kms->console), POLLIN, 0}};
+	bool told_loss = false;
+
+	prepare_thread(kms);
+	pthread_mutex_lock(&kms->lock);
+	while (!kms->stop) {
+		const uint64_t now_ns = now_of(kms), then_ns = next_time(kms), span = then_ns > now_ns ? then_ns - now_ns : 0;
+		const struct timespec timeout = {(time_t)(span / SECOND), (long)(span % SECOND)};
+		pthread_mutex_unlock(&kms->lock);
+		tell(kms, &told_loss);
+		if (ppoll(fds, 4, &timeout, NULL) < 0)
+			for (int i = 0; i < 4; i++)
+				fds[i].revents = 0;
+		pthread_mutex_lock(&kms->lock);
+		if (!kms->stop)
+			act(kms, fds);
+	}
+	pthread_mutex_unlock(&kms->lock);
+	return NULL;
+}

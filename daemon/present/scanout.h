@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Which picture a display controller shows, which one is on its way to it, and
+ * what each vblank is reported to have shown. A controller takes one flip at a
+ * time, ahead of the vblank, and says afterwards at which vblank it happened; so
+ * a picture has three owners in turn: the queue (struct flips), the flip under
+ * way, the display. It can be drawn into again only when none of them holds it.
+ *
+ * A picture that its vblank did not get, because a flip was still under way, is
+ * shown at the next vblank that has none of its own: late, never lost.
+ *
+ * Pure; flips and locks are the caller's.
+ */
+#ifndef PURSUIT_SCANOUT_H
+#define PURSUIT_SCANOUT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "daemon/present/flips.h"
+
+struct scanout_picture {
+	bool any;
+	uint32_t image;
+	uint64_t serial, group;
+};
+
+/* Zeroed: nothing queued, nothing shown, vblank 0 is the first that is reported. */
+struct scanout {
+	struct flips flips;
+	enum presenter_shown chosen_as;        /* how flips.front came to be the front */
+	struct scanout_picture under_way, shown;
+	uint64_t under_way_vblank;             /* the vblank it is meant for */
+	enum presenter_shown under_way_as;
+	bool fresh, fresh_late;                /* `shown` was not reported yet */
+	enum presenter_shown fresh_as;
+	struct presenter_flip waiting;         /* a vblank whose flip has not been heard of */
+	bool is_waiting;
+	uint64_t next_vblank;                  /* the first that was not reported */
+};
+
+/* Reports begin at this vblank; one that is still waited for is given up. */
+void scanout_start(struct scanout *scanout, uint64_t vblank);
+
+/*
+ * The picture for a vblank that is close: flip to this image now. It counts as under way until scanout_flipped() or
+ * scanout_failed(). -1: nothing to do, the picture stays or a flip is under way. May be called again for the same
+ * vblank while nothing is under way.
+ */
+int scanout_choose(struct scanout *scanout, uint64_t vblank);
+
+/* The controller did not take the flip; the picture is tried again for the next vblank. */
+void scanout_failed(struct scanout *scanout);
+
+/* Both give the reports that are due now: at most 2, in the order of vblanks. */
+
+/* The flip under way happened at this vblank. */
+uint32_t scanout_flipped(struct scanout *scanout, uint64_t vblank, struct presenter_flip reports[2]);
+
+/* A vblank came: vblank, target_ns, flip_ns, sequence and time_source of `flip` are taken over. */
+uint32_t scanout_vblank(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip reports[2]);
+
+#endif
