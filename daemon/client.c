@@ -22,23 +22,19 @@ static bool may_log(struct client *client)
 
 /* ---- life ---- */
 
-struct client *client_create(const struct server_params *params, struct packet *packet, int fd, uint64_t id)
+struct client *client_create(const struct server_params *params, struct packet *packet, int fd, const struct peer *peer,
+							 uint64_t id)
 {
 	struct client *client = calloc(1, sizeof(*client));
-	struct ucred peer = {0};
-	socklen_t size = sizeof(peer);
 	if (!client)
 		return NULL;
-	if (getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0) {
-		client->pid = peer.pid;
-		client->uid = peer.uid;
-	}
+	client->peer = *peer;
 	client->params = params;
 	client->packet = packet;
 	client->fd = fd;
 	client->id = id;
 	client->connected_ns = clock_now(params->clock);
-	snprintf(client->name, sizeof(client->name), "process %d", (int)client->pid);
+	snprintf(client->name, sizeof(client->name), "process %d", (int)client->peer.pid);
 	return client;
 }
 
@@ -48,6 +44,7 @@ static void end_stream(struct client_stream *entry)
 		return;
 	loop_remove(&entry->wake);
 	output_remove_stream(entry->client->params->output, entry->stream);
+	entry->client->stream_bytes -= entry->stream->planes_bytes;
 	stream_release(&entry->stream);
 }
 
@@ -77,7 +74,7 @@ void client_send(struct client *client, const void *message, size_t bytes, int f
 	client->gone = true;
 	if (result == -EAGAIN)
 		log_warning(client->params->log, "client %s (pid %d) does not read its socket and is dropped", client->name,
-					(int)client->pid);
+					(int)client->peer.pid);
 }
 
 void client_refuse(struct client *client, uint32_t serial, uint64_t stream_id, bool fatal,
@@ -93,7 +90,7 @@ void client_refuse(struct client *client, uint32_t serial, uint64_t stream_id, b
 	snprintf(message.field, sizeof(message.field), "%s", refusal->field);
 	snprintf(message.text, sizeof(message.text), "%s", refusal->text);
 	if (refusal->code != PURSUIT_REFUSED_SHUTDOWN && may_log(client))
-		log_warning(client->params->log, "client %s (pid %d) refused: %s", client->name, (int)client->pid,
+		log_warning(client->params->log, "client %s (pid %d) refused: %s", client->name, (int)client->peer.pid,
 					refusal->text);
 	client_send(client, &message, sizeof(message), -1);
 	if (fatal)
@@ -133,7 +130,7 @@ static void welcome(struct client *client, uint32_t serial)
 		.version = PURSUIT_WIRE_VERSION_MAX,
 		.max_width = PURSUIT_MAX_SIZE,
 		.max_height = PURSUIT_MAX_SIZE,
-		.max_streams = PURSUIT_MAX_STREAMS_PER_CLIENT,
+		.max_streams = client->params->settings->max_streams,
 		.max_slots = PURSUIT_MAX_SLOTS,
 		.max_slot_bytes = (uint64_t)client->params->settings->max_frame_mb << 20,
 		.name = "pursuitd " PURSUITD_VERSION,
@@ -166,8 +163,8 @@ static void on_hello(struct client *client)
 	} else {
 		client->greeted = true;
 		set_name(client, hello->name);
-		log_debug(client->params->log, "client %s (pid %d, uid %u) is here", client->name, (int)client->pid,
-				  (unsigned)client->uid);
+		log_debug(client->params->log, "client %s (pid %d, uid %u) is here", client->name, (int)client->peer.pid,
+				  (unsigned)client->peer.uid);
 		welcome(client, hello->header.serial);
 	}
 }
@@ -184,7 +181,10 @@ struct client_stream *client_find_stream(struct client *client, uint64_t stream_
 
 static struct client_stream *free_entry(struct client *client)
 {
+	uint32_t open = 0;
 	for (uint32_t i = 0; i < PURSUIT_MAX_STREAMS_PER_CLIENT; i++)
+		open += client->streams[i].stream != NULL;
+	for (uint32_t i = 0; i < PURSUIT_MAX_STREAMS_PER_CLIENT && open < client->params->settings->max_streams; i++)
 		if (!client->streams[i].stream)
 			return &client->streams[i];
 	return NULL;
@@ -220,13 +220,25 @@ static int enter_stream(struct client *client, struct client_stream *entry, stru
 {
 	entry->client = client;
 	entry->stream = stream;
+	client->stream_bytes += stream->planes_bytes;
 	entry->wake = loop_add(client->params->loop, stream->wake_fd, EPOLLIN | EPOLLET, on_wake, entry);
 	if (entry->wake && output_add_stream(client->params->output, stream))
 		return 0;
 	loop_remove(&entry->wake);
+	client->stream_bytes -= stream->planes_bytes;
 	stream_release(&entry->stream);
 	return refuse(refusal, -ENOSPC, PURSUIT_REFUSED_LIMIT, "", OUTPUT_STREAMS,
 				  "the daemon has no room for another stream (%u)", OUTPUT_STREAMS);
+}
+
+/* Absurd numbers are refused for what they are, later. */
+static bool fits_client(const struct client *client, const struct pursuit_message_open_stream *open)
+{
+	const uint64_t most = (uint64_t)client->params->settings->max_client_mb << 20;
+	uint64_t bytes;
+	if (open->slot_count > PURSUIT_MAX_SLOTS || __builtin_mul_overflow(open->slot_bytes, open->slot_count, &bytes))
+		return true;
+	return client->stream_bytes <= most && bytes <= most - client->stream_bytes;
 }
 
 static int open_stream(struct client *client, struct refusal *refusal)
@@ -246,8 +258,13 @@ static int open_stream(struct client *client, struct refusal *refusal)
 					  "stream_id is %" PRIu64 ", which is open already on this connection", open->stream_id);
 	if (!entry)
 		return refuse(refusal, -ENOSPC, PURSUIT_REFUSED_LIMIT, "stream_id", open->stream_id,
-					  "stream_id is %" PRIu64 ": a client may have %u streams open, and has", open->stream_id,
-					  PURSUIT_MAX_STREAMS_PER_CLIENT);
+					  "stream_id is %" PRIu64 ": a client may have %u streams open, and has (max-streams)",
+					  open->stream_id, client->params->settings->max_streams);
+	if (!fits_client(client, open))
+		return refuse(refusal, -ENOSPC, PURSUIT_REFUSED_LIMIT, "slot_bytes", open->slot_bytes,
+					  "slot_bytes is %" PRIu64 " in %" PRIu32 " slots: with %" PRIu64
+					  " bytes open that is more than a client may offer (max-client-mb)",
+					  open->slot_bytes, open->slot_count, client->stream_bytes);
 	struct stream *stream = stream_create(&params, client->packet->fds[0], client->packet->fds[1], refusal);
 	if (!stream)
 		return -EINVAL;
@@ -255,7 +272,7 @@ static int open_stream(struct client *client, struct refusal *refusal)
 	if (result < 0)
 		return result;
 	log_info(client->params->log, "stream %" PRIu64 " of %s (pid %d) opened: %" PRIu32 " slots of %" PRIu64 " bytes",
-			 open->stream_id, client->name, (int)client->pid, open->slot_count, open->slot_bytes);
+			 open->stream_id, client->name, (int)client->peer.pid, open->slot_count, open->slot_bytes);
 	say_opened(client, open->header.serial, stream);
 	return 0;
 }
@@ -390,6 +407,22 @@ static void dispatch(struct client *client)
 		messages[i].handle(client);
 }
 
+/* A client that sends without end costs the others time. */
+static bool within_rate(struct client *client)
+{
+	const uint64_t second = clock_now(client->params->clock) / UINT64_C(1000000000);
+	const uint32_t most = client->params->settings->max_messages;
+	struct refusal refusal;
+	if (second != client->rate.second)
+		client->rate = (struct message_rate){.second = second};
+	if (client->rate.count++ < most)
+		return true;
+	refuse(&refusal, -EBUSY, PURSUIT_REFUSED_LIMIT, "messages", most,
+		   "messages in a second are more than %" PRIu32 ", the most of a client (max-messages)", most);
+	client_refuse(client, 0, 0, true, &refusal);
+	return false;
+}
+
 void client_read(struct client *client, uint32_t events)
 {
 	for (int i = 0; i < PACKETS_AT_ONCE && !client->gone; i++) {
@@ -400,7 +433,7 @@ void client_read(struct client *client, uint32_t events)
 			client->gone = true;
 		if (got <= 0)
 			return;
-		if (check_packet(client))
+		if (within_rate(client) && check_packet(client))
 			dispatch(client);
 		packet_finish(client->packet);
 	}

@@ -14,6 +14,7 @@
 #include <sys/types.h>
 
 #include "daemon/packet.h"
+#include "daemon/peer.h"
 #include "daemon/server.h"
 
 struct client;
@@ -33,16 +34,21 @@ struct client {
 	struct loop_source *source;
 	bool greeted;
 	bool gone; /* to be removed by the server */
-	pid_t pid;
-	uid_t uid;
+	struct peer peer;
 	uint64_t connected_ns;
 	char name[64];
 	struct client_stream streams[PURSUIT_MAX_STREAMS_PER_CLIENT];
+	uint64_t stream_bytes; /* mapped, of all streams */
+	struct message_rate {
+		uint64_t second;
+		uint32_t count;
+	} rate;
 	struct log_limit log_limit;
 };
 
 /* Takes the fd over. NULL: no memory. */
-struct client *client_create(const struct server_params *params, struct packet *packet, int fd, uint64_t id);
+struct client *client_create(const struct server_params *params, struct packet *packet, int fd, const struct peer *peer,
+                             uint64_t id);
 /* Closes the connection and ends its streams. */
 void client_destroy(struct client **client);
 

@@ -28,6 +28,11 @@ static size_t print_time(char *line, size_t size)
 	return length + (size_t)snprintf(line + length, size - length, ".%03ld ", now.tv_nsec / 1000000);
 }
 
+void log_set_level(struct log *log, enum log_level level)
+{
+	__atomic_store_n(&log->level, level, __ATOMIC_RELAXED);
+}
+
 void log_print(const struct log *log, enum log_level level, const char *format, ...)
 {
 	static const char *const names[] = {"error: ", "warning: ", "", "debug: "};
@@ -36,7 +41,7 @@ void log_print(const struct log *log, enum log_level level, const char *format, 
 	size_t length = 0;
 	va_list arguments;
 
-	if (!log || level > log->level)
+	if (!log || level > __atomic_load_n(&log->level, __ATOMIC_RELAXED))
 		return;
 	if (log->with_time)
 		length = print_time(line, sizeof(line));

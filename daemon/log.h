@@ -19,7 +19,7 @@ enum log_level {
 	LOG_LEVEL_DEBUG,
 };
 
-/* Never changes after log_init(), except `level`. */
+/* Never changes after log_init(), except `level`, by log_set_level(). */
 struct log {
 	int fd;
 	enum log_level level;
@@ -28,6 +28,9 @@ struct log {
 
 /* To standard error; with times unless systemd's journal adds its own. */
 void log_init(struct log *log, enum log_level level);
+
+/* While other threads log. */
+void log_set_level(struct log *log, enum log_level level);
 
 /* Keeps errno. A NULL log is silent. */
 __attribute__((format(printf, 3, 4))) void log_print(const struct log *log, enum log_level level, const char *format,

@@ -140,6 +140,18 @@ static const struct option_row rows[] = {
 	NUMBER(max_clients, "max-clients", OPTION_DAEMON, "16", 1, 256, "", "Clients that may be connected at once."),
 	NUMBER(max_frame_mb, "max-frame-mb", OPTION_DAEMON, "1024", 1, 1024, "MiB",
 		   "Largest frame (all its planes) that a client may offer."),
+	NUMBER(max_streams, "max-streams", OPTION_DAEMON, "4", 1, 4, "", "Streams that one client may have open."),
+	NUMBER(max_client_mb, "max-client-mb", OPTION_DAEMON, "8192", 1, 65536, "MiB",
+		   "Shared memory that one client may offer, all its streams together."),
+	NUMBER(max_messages, "max-messages", OPTION_DAEMON, "2000", 10, 1000000, "",
+		   "Messages that one client may send in a second; frames are none."),
+	TEXT(allow_users, "allow-users", OPTION_DAEMON, "",
+		 "Users that may be clients, by name or number, separated by commas; empty, as allow-groups: everybody who can "
+		 "reach the socket."),
+	TEXT(allow_groups, "allow-groups", OPTION_DAEMON, "", "Groups whose members may be clients."),
+	FLAG(seccomp, "seccomp", OPTION_DAEMON, "no",
+		 "After start-up let the kernel refuse what only a daemon that was taken over would need: other programs, "
+		 "processes, namespaces, network."),
 	CHOICE(log_level, "log-level", OPTION_DAEMON, "info", log_choices, "Least important messages that are logged."),
 	{0},
 };

@@ -51,6 +51,12 @@ struct settings {
 	char stats[512];            /* "": no statistics file at the end */
 	uint32_t max_clients;
 	uint32_t max_frame_mb;      /* largest slot that a client may offer */
+	uint32_t max_streams;       /* of one client */
+	uint32_t max_client_mb;     /* shared memory of one client, all its streams together */
+	uint32_t max_messages;      /* of one client in a second */
+	char allow_users[256];      /* peer.h; both empty: everybody */
+	char allow_groups[256];
+	bool seccomp;
 	uint32_t log_level;         /* 0 error, 1 warning, 2 info, 3 debug */
 };
 

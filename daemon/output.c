@@ -26,6 +26,7 @@ struct output {
 	pthread_t thread;
 	int event_fd;
 
+	_Atomic uint64_t beats;
 	pthread_mutex_t lock; /* the mailbox */
 	pthread_cond_t wake;
 	bool stop, woken, streams_changed, presenter_changed;
@@ -285,6 +286,7 @@ static void *run(void *data)
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	if (start(output) == 0) {
 		while (read_mailbox(output)) {
+			atomic_fetch_add_explicit(&output->beats, 1, memory_order_relaxed);
 			const uint64_t next_ns = render_step(&output->render);
 			if (next_ns > clock_now(output->params.clock)) {
 				publish_stats(output);
@@ -431,6 +433,11 @@ void output_remove_stream(struct output *output, struct stream *stream)
 	}
 	pthread_mutex_unlock(&output->lock);
 	stream_release(&found);
+}
+
+uint64_t output_beats(const struct output *output)
+{
+	return atomic_load_explicit(&output->beats, memory_order_relaxed);
 }
 
 void output_wake(struct output *output)

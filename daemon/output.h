@@ -75,6 +75,9 @@ void output_destroy(struct output **output);
 bool output_add_stream(struct output *output, struct stream *stream);
 void output_remove_stream(struct output *output, struct stream *stream);
 
+/* How often the render thread has gone round; it stands still when that sleeps or is stuck. */
+uint64_t output_beats(const struct output *output);
+
 /* Something may have changed: a stream has a new frame. Never waits long. */
 void output_wake(struct output *output);
 

@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 #include <unistd.h>
 
 #include "daemon/clock.h"
@@ -19,9 +17,13 @@
 #include "daemon/lab/lab.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
+#include "daemon/notify.h"
 #include "daemon/options.h"
 #include "daemon/output.h"
+#include "daemon/peer.h"
 #include "daemon/present/presenter.h"
+#include "daemon/reload.h"
+#include "daemon/seccomp.h"
 #include "daemon/server.h"
 #include "daemon/version.h"
 
@@ -38,6 +40,9 @@ struct pursuitd {
 	struct output *output;
 	struct control *control;
 	struct server *server;
+	struct watchdog *watchdog;
+	int argc;
+	char **argv;
 };
 
 /* ---- the command line ---- */
@@ -138,33 +143,38 @@ static int read_arguments(struct settings *settings, int argc, char **argv)
 	return check_names(settings, &error) < 0 ? usage_error(error.text) : -1;
 }
 
+/* Users and groups that there are not would lock out whom they were meant to let in. */
+static int check_peers(const struct settings *settings)
+{
+	struct error error;
+	if (peer_check_users("allow-users", settings->allow_users, &error) == 0 &&
+		peer_check_groups("allow-groups", settings->allow_groups, &error) == 0)
+		return 0;
+	usage_error(error.text);
+	return -EINVAL;
+}
+
 /* ---- running ---- */
 
-/* Tells systemd, if it started us, that clients may come (sd_notify(3), by hand). */
-static void notify(const struct log *log, const char *state)
+/* Command line and files again; with a mistake in them all stays as it is. */
+static void reload(struct pursuitd *daemon)
 {
-	const char *path = getenv("NOTIFY_SOCKET");
-	struct sockaddr_un address = {.sun_family = AF_UNIX};
-	if (!path || (*path != '/' && *path != '@') || strlen(path) >= sizeof(address.sun_path))
-		return;
-	const size_t length = strlen(path);
-	memcpy(address.sun_path, path, length);
-	if (*path == '@')
-		address.sun_path[0] = 0;
-	const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-	if (fd < 0)
-		return;
-	if (sendto(fd, state, strlen(state), MSG_NOSIGNAL, (struct sockaddr *)&address,
-			   (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)) < 0)
-		log_warning(log, "NOTIFY_SOCKET: %s", strerror(errno));
-	close(fd);
+	struct settings fresh;
+	notify_reloading(&daemon->log);
+	settings_defaults(&fresh);
+	if (read_arguments(&fresh, daemon->argc, daemon->argv) >= 0 || check_peers(&fresh) < 0)
+		log_error(&daemon->log, "SIGHUP: the settings stay as they are");
+	else
+		log_info(&daemon->log, "SIGHUP: settings read again, %u changed",
+				 reload_settings(&daemon->settings, &fresh, &daemon->log));
+	notify_ready(&daemon->log);
 }
 
 static void on_signal(void *data, int number)
 {
 	struct pursuitd *daemon = data;
 	if (number == SIGHUP) {
-		log_info(&daemon->log, "SIGHUP: settings are read at the start only");
+		reload(daemon);
 		return;
 	}
 	log_info(&daemon->log, "%s: stopping", number == SIGINT ? "SIGINT" : "SIGTERM");
@@ -239,7 +249,7 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->output = output_create(&output_params, error);
 	if (!daemon->output)
 		return -1;
-	const struct control_params control_params = {daemon->loop,      &daemon->log,    &daemon->clock,
+	const struct control_params control_params = {daemon->loop,      &daemon->log,   &daemon->clock,
 												  &daemon->settings, daemon->output, daemon->lab};
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
@@ -250,7 +260,9 @@ static int start(struct pursuitd *daemon, struct error *error)
 	if (!daemon->server)
 		return -1;
 	control_set_server(daemon->control, daemon->server);
-	return 0;
+	if (watchdog_create(&daemon->watchdog, daemon->loop, &daemon->log, daemon->output, error) < 0)
+		return -1;
+	return daemon->settings.seccomp ? seccomp_apply(error) : 0;
 }
 
 static void announce(struct pursuitd *daemon)
@@ -262,7 +274,7 @@ static void announce(struct pursuitd *daemon)
 	log_info(&daemon->log, "pursuitd %s: method %s, %s at %s Hz, %s (%s)", PURSUITD_VERSION, daemon->settings.method,
 			 info.presenter, refresh, info.renderer, info.context);
 	log_info(&daemon->log, "listening at %s", server_path(daemon->server));
-	notify(&daemon->log, "READY=1");
+	notify_ready(&daemon->log);
 }
 
 static bool write_stats_file(const struct pursuitd *daemon, const char *text)
@@ -302,6 +314,7 @@ static void stop(struct pursuitd *daemon)
 {
 	if (daemon->control)
 		control_set_server(daemon->control, NULL);
+	watchdog_destroy(&daemon->watchdog);
 	server_destroy(&daemon->server);
 	control_destroy(&daemon->control);
 	output_destroy(&daemon->output);
@@ -311,7 +324,7 @@ static void stop(struct pursuitd *daemon)
 
 int main(int argc, char **argv)
 {
-	struct pursuitd daemon = {0};
+	struct pursuitd daemon = {.argc = argc, .argv = argv};
 	struct error error = {""};
 	int status;
 
@@ -319,6 +332,8 @@ int main(int argc, char **argv)
 	status = read_arguments(&daemon.settings, argc, argv);
 	if (status >= 0)
 		return status;
+	if (check_peers(&daemon.settings) < 0)
+		return EXIT_USAGE;
 	log_init(&daemon.log, (enum log_level)daemon.settings.log_level);
 	status = 0;
 	if (start(&daemon, &error) < 0) {
@@ -330,7 +345,7 @@ int main(int argc, char **argv)
 			log_error(&daemon.log, "%s", error.text);
 			status = 1;
 		}
-		notify(&daemon.log, "STOPPING=1");
+		notify_stopping(&daemon.log);
 		if (!tell_stats(&daemon))
 			status = 1;
 	}

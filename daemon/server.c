@@ -28,6 +28,7 @@ struct server {
 	uint32_t client_count;
 	uint64_t next_id;
 	struct packet *packet;
+	struct log_limit log_limit; /* of clients that are turned away */
 };
 
 /* ---- clients ---- */
@@ -47,7 +48,7 @@ static void remove_client(struct server *server, struct client *client)
 		link = &(*link)->next;
 	*link = client->next;
 	server->client_count--;
-	log_debug(server->params.log, "client %s (pid %d) is gone", client->name, (int)client->pid);
+	log_debug(server->params.log, "client %s (pid %d) is gone", client->name, (int)client->peer.pid);
 	client_destroy(&client);
 }
 
@@ -84,30 +85,43 @@ static bool make_room(struct server *server)
 	return oldest != NULL;
 }
 
-static void turn_away(struct server *server, int fd)
+__attribute__((format(printf, 6, 7))) static void turn_away(struct server *server, int fd, uint32_t code,
+															const char *field, uint64_t value, const char *format, ...)
 {
 	struct pursuit_message_refused message = {
 		.header = {.type = PURSUIT_MESSAGE_REFUSED, .size = sizeof(message)},
-		.code = PURSUIT_REFUSED_LIMIT,
+		.code = code,
 		.fatal = 1,
-		.value = server->client_count,
-		.field = "clients",
+		.value = value,
 	};
-	snprintf(message.text, sizeof(message.text),
-			 "clients is %" PRIu32 ", the most that this daemon serves (max-clients)", server->client_count);
+	va_list arguments;
+	snprintf(message.field, sizeof(message.field), "%s", field);
+	va_start(arguments, format);
+	vsnprintf(message.text, sizeof(message.text), format, arguments);
+	va_end(arguments);
 	packet_send(fd, &message, sizeof(message), -1);
 	packet_drain(fd);
 	close(fd);
-	log_warning(server->params.log, "%s", message.text);
+	if (log_limit_allows(&server->log_limit, clock_now(server->params.clock)))
+		log_warning(server->params.log, "%s", message.text);
 }
 
 static void add_client(struct server *server, int fd)
 {
-	if (!make_room(server)) {
-		turn_away(server, fd);
+	const struct settings *settings = server->params.settings;
+	const struct peer peer = peer_of(fd);
+	if (!peer_allowed(&peer, fd, settings->allow_users, settings->allow_groups)) {
+		turn_away(server, fd, PURSUIT_REFUSED_PERMISSION, "uid", peer.uid,
+				  "uid is %u, which may not be a client of this daemon (allow-users, allow-groups)",
+				  (unsigned)peer.uid);
 		return;
 	}
-	struct client *client = client_create(&server->params, server->packet, fd, server->next_id++);
+	if (!make_room(server)) {
+		turn_away(server, fd, PURSUIT_REFUSED_LIMIT, "clients", server->client_count,
+				  "clients is %" PRIu32 ", the most that this daemon serves (max-clients)", server->client_count);
+		return;
+	}
+	struct client *client = client_create(&server->params, server->packet, fd, &peer, server->next_id++);
 	if (!client) {
 		close(fd);
 		return;
@@ -266,7 +280,7 @@ static json_t *stream_json(const struct client *client, struct stream *stream)
 	struct stream_counters *c = &stream->counters;
 	const uint64_t interval_ns = atomic_load(&c->interval_ns);
 	return json_pack("{s:I, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id", (json_int_t)stream->stream_id,
-					 "client", client->name, "pid", (int)client->pid, "uid", (int)client->uid, "width",
+					 "client", client->name, "pid", (int)client->peer.pid, "uid", (int)client->peer.uid, "width",
 					 (int)atomic_load(&c->width), "height", (int)atomic_load(&c->height), "frame_id",
 					 (json_int_t)atomic_load(&c->last_frame_id), "real_frames",
 					 (json_int_t)atomic_load(&c->real_frames), "refused_frames",

@@ -98,6 +98,7 @@ struct pursuit_message_welcome {
 #define PURSUIT_REFUSED_LIMIT 6u    /* too many clients, streams or bytes */
 #define PURSUIT_REFUSED_FRAME 7u    /* a frame header in shared memory was invalid */
 #define PURSUIT_REFUSED_SHUTDOWN 8u /* the daemon is stopping */
+#define PURSUIT_REFUSED_PERMISSION 9u /* this user may not be a client */
 
 /* 256 bytes. */
 struct pursuit_message_refused {

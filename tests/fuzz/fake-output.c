@@ -109,6 +109,11 @@ void output_wake(struct output *output)
 {
 }
 
+uint64_t output_beats(const struct output *output)
+{
+	return 0;
+}
+
 int output_event_fd(const struct output *output)
 {
 	return output->event_fd;

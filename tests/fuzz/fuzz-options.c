@@ -14,7 +14,7 @@
 #include "tests/fuzz/fuzz.h"
 
 #define MOST_ARGUMENTS 16
-#define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_DAEMON)
+#define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_LAB | 1u << OPTION_DAEMON)
 
 /* Every setting, as text, gives the same setting again. */
 static void check_round_trip(const struct settings *settings)

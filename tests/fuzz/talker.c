@@ -278,7 +278,7 @@ static void check_answer(const uint8_t *packet, size_t bytes)
 	case PURSUIT_MESSAGE_REFUSED:
 		FUZZ_EXPECT(bytes == sizeof(refused));
 		memcpy(&refused, packet, sizeof(refused));
-		FUZZ_EXPECT(refused.code >= 1 && refused.code <= 8 && refused.fatal <= 1);
+		FUZZ_EXPECT(refused.code >= 1 && refused.code <= 9 && refused.fatal <= 1);
 		FUZZ_EXPECT(memchr(refused.field, 0, sizeof(refused.field)) && memchr(refused.text, 0, sizeof(refused.text)));
 		return;
 	case PURSUIT_MESSAGE_STREAM_OPENED:

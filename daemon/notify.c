@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/notify.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/timerfd.h>
+#include <sys/un.h>
+#include <time.h>
+#include <unistd.h>
+
+/* Looks in one interval: with three, one that comes late costs nothing. */
+#define LOOKS 3u
+
+struct watchdog {
+	const struct log *log;
+	struct output *output;
+	int timer_fd;
+	struct loop_source *source;
+	uint64_t beats;
+	bool stuck;
+};
+
+void notify_send(const struct log *log, const char *state)
+{
+	const char *path = getenv("NOTIFY_SOCKET");
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	if (!path || (*path != '/' && *path != '@') || strlen(path) >= sizeof(address.sun_path))
+		return;
+	const size_t length = strlen(path);
+	memcpy(address.sun_path, path, length);
+	if (*path == '@')
+		address.sun_path[0] = 0;
+	const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+	if (fd < 0)
+		return;
+	if (sendto(fd, state, strlen(state), MSG_NOSIGNAL, (struct sockaddr *)&address,
+			   (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length)) < 0)
+		log_warning(log, "NOTIFY_SOCKET: %s", strerror(errno));
+	close(fd);
+}
+
+void notify_ready(const struct log *log)
+{
+	notify_send(log, "READY=1");
+}
+
+void notify_reloading(const struct log *log)
+{
+	struct timespec now;
+	char text[64];
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	snprintf(text, sizeof(text), "RELOADING=1\nMONOTONIC_USEC=%" PRIu64,
+			 (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u);
+	notify_send(log, text);
+}
+
+void notify_stopping(const struct log *log)
+{
+	notify_send(log, "STOPPING=1");
+}
+
+/* ---- the watchdog ---- */
+
+static void on_timer(void *data, uint32_t events)
+{
+	struct watchdog *watchdog = data;
+	uint64_t count;
+	(void)events;
+	if (read(watchdog->timer_fd, &count, sizeof(count)) < 0)
+		return;
+	const uint64_t beats = output_beats(watchdog->output);
+	const bool stuck = beats == watchdog->beats;
+	if (!stuck)
+		notify_send(watchdog->log, "WATCHDOG=1");
+	else if (!watchdog->stuck)
+		log_error(watchdog->log, "the presentation loop is stuck: the watchdog is not fed");
+	watchdog->stuck = stuck;
+	watchdog->beats = beats;
+	output_wake(watchdog->output);
+}
+
+/* Microseconds, 0: none wanted, or not of this process. */
+static uint64_t interval_wanted(void)
+{
+	const char *interval = getenv("WATCHDOG_USEC"), *pid = getenv("WATCHDOG_PID");
+	if (!interval || (pid && strtol(pid, NULL, 10) != (long)getpid()))
+		return 0;
+	return strtoull(interval, NULL, 10);
+}
+
+static int start_timer(struct watchdog *watchdog, uint64_t interval_us)
+{
+	const uint64_t step_us = interval_us / LOOKS + 1;
+	const struct timespec step = {(time_t)(step_us / 1000000), (long)(step_us % 1000000) * 1000};
+	const struct itimerspec times = {step, step};
+	watchdog->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+	if (watchdog->timer_fd < 0 || timerfd_settime(watchdog->timer_fd, 0, &times, NULL) < 0)
+		return -errno;
+	return 0;
+}
+
+int watchdog_create(struct watchdog **watchdog, struct loop *loop, const struct log *log, struct output *output,
+					struct error *error)
+{
+	const uint64_t interval_us = interval_wanted();
+	*watchdog = NULL;
+	if (interval_us == 0)
+		return 0;
+	struct watchdog *self = calloc(1, sizeof(*self));
+	if (!self)
+		return error_set(error, -ENOMEM, "watchdog: out of memory");
+	*self = (struct watchdog){.log = log, .output = output, .timer_fd = -1, .beats = UINT64_MAX};
+	int result = start_timer(self, interval_us);
+	if (result == 0) {
+		self->source = loop_add(loop, self->timer_fd, EPOLLIN, on_timer, self);
+		result = self->source ? 0 : -errno;
+	}
+	if (result < 0) {
+		watchdog_destroy(&self);
+		return error_set(error, result, "watchdog: %s", strerror(-result));
+	}
+	log_debug(log, "watchdog: fed every %" PRIu64 " ms", interval_us / LOOKS / 1000);
+	*watchdog = self;
+	return 0;
+}
+
+void watchdog_destroy(struct watchdog **watchdog)
+{
+	struct watchdog *self = *watchdog;
+	*watchdog = NULL;
+	if (!self)
+		return;
+	loop_remove(&self->source);
+	if (self->timer_fd >= 0)
+		close(self->timer_fd);
+	free(self);
+}

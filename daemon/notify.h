@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * What the service manager is told, and its watchdog. The protocol is a datagram
+ * of `NAME=VALUE` lines (sd_notify(3)), stable by systemd's own promise and less
+ * than a library to link: so it is spoken by hand.
+ *
+ * The watchdog is fed from the presentation loop: at each third of the interval
+ * main looks whether the render thread has gone round since the last look, tells
+ * systemd if so, and wakes it. An idle loop goes round because it is woken, a
+ * stuck one does not, and the service is restarted.
+ *
+ * On main.
+ */
+#ifndef PURSUIT_NOTIFY_H
+#define PURSUIT_NOTIFY_H
+
+#include "daemon/error.h"
+#include "daemon/log.h"
+#include "daemon/loop.h"
+#include "daemon/output.h"
+
+/* Sends to $NOTIFY_SOCKET; nothing without one. Never waits. */
+void notify_send(const struct log *log, const char *state);
+void notify_ready(const struct log *log);
+void notify_reloading(const struct log *log);
+void notify_stopping(const struct log *log);
+
+struct watchdog;
+
+/* *watchdog is NULL if the manager wants none ($WATCHDOG_USEC, $WATCHDOG_PID). 0 or -errno with a sentence. */
+int watchdog_create(struct watchdog **watchdog, struct loop *loop, const struct log *log, struct output *output,
+                    struct error *error);
+/* NULL accepted. */
+void watchdog_destroy(struct watchdog **watchdog);
+
+#endif

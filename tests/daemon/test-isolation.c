@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* Who may be a client, how much one client may have, and what the daemon itself may do no more. */
+
+#include <errno.h>
+#include <fcntl.h>
+#include <grp.h>
+#include <pthread.h>
+#include <signal.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "daemon/peer.h"
+#include "daemon/seccomp.h"
+#include "tests/daemon/fixture.h"
+#include "tests/daemon/raw-client.h"
+
+#define STRANGER 54321u
+#define THEIR_GROUP 54322u
+#define OTHER_GROUP 54323u
+
+static struct fixture fixture;
+
+/* ---- users and groups ---- */
+
+static void test_lists(void)
+{
+	struct error error = {""};
+	const struct peer me = {getpid(), getuid(), getgid()}, stranger = {1, STRANGER, STRANGER},
+					  unknown = {0, (uid_t)-1, (gid_t)-1};
+	CHECK(peer_allowed(&stranger, -1, "", ""));
+	CHECK(!peer_allowed(&stranger, -1, "1,2", ""));
+	CHECK(peer_allowed(&stranger, -1, " 1, 54321 ,2", ""));
+	CHECK(peer_allowed(&stranger, -1, "", "54321"));
+	CHECK(!peer_allowed(&stranger, -1, "nobody-of-that-name", "none"));
+	CHECK(!peer_allowed(&stranger, -1, "5432,543210,54321x,-54321,0x54321", ""));
+	CHECK(peer_allowed(&me, -1, "1", ""));
+	CHECK(!peer_allowed(&unknown, -1, "4294967295,-1", "4294967295"));
+	CHECK_INT(peer_check_users("allow-users", "root,0,54321", &error), 0);
+	CHECK_INT(peer_check_users("allow-users", "root,no-such-user-here", &error), -EINVAL);
+	CHECK_STRING(error.text, "allow-users: there is no user \"no-such-user-here\"");
+	CHECK_INT(peer_check_groups("allow-groups", "no-such-group", &error), -EINVAL);
+	CHECK_INT(peer_check_groups("allow-groups", ",, root", &error), 0);
+}
+
+/* What a process of another user is answered: the refusal's code, 0 welcome, -1 neither. */
+static int answer_to(uid_t uid, gid_t gid, gid_t other)
+{
+	fflush(stdout);
+	const pid_t child = fork();
+	if (child == 0) {
+		const struct pursuit_message_hello hello = raw_hello();
+		static struct raw_reply reply;
+		if (setgroups(1, &other) < 0 || setgid(gid) < 0 || setuid(uid) < 0)
+			_exit(99);
+		const int fd = raw_connect(fixture.socket);
+		raw_send(fd, &hello, sizeof(hello), NULL, 0);
+		if (fd < 0 || !raw_receive(fd, &reply))
+			_exit(98);
+		_exit(reply.header.type == PURSUIT_MESSAGE_REFUSED   ? (int)reply.refused.code
+			  : reply.header.type == PURSUIT_MESSAGE_WELCOME ? 0
+															 : 97);
+	}
+	int status = 0;
+	waitpid(child, &status, 0);
+	return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void start_for_all(const char *option, const char *value)
+{
+	const char *const arguments[] = {option, value, NULL};
+	fixture_start(&fixture, arguments);
+	chmod(fixture.folder, 0755);
+	chmod(fixture.socket, 0777);
+}
+
+static void test_strangers(void)
+{
+	if (geteuid() != 0) {
+		printf("       not root: other users are not tried\n");
+		return;
+	}
+	start_for_all("--allow-users", "54321");
+	CHECK_INT(answer_to(STRANGER, THEIR_GROUP, OTHER_GROUP), 0);
+	CHECK_INT(answer_to(STRANGER + 10, STRANGER, STRANGER), PURSUIT_REFUSED_PERMISSION);
+	CHECK(fixture_logged(&fixture, "uid is 54331, which may not be a client"));
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+	start_for_all("--allow-groups", "54323");
+	CHECK_INT(answer_to(STRANGER, THEIR_GROUP, OTHER_GROUP), 0);
+	CHECK_INT(answer_to(STRANGER, OTHER_GROUP, THEIR_GROUP), 0);
+	CHECK_INT(answer_to(STRANGER, THEIR_GROUP, THEIR_GROUP), PURSUIT_REFUSED_PERMISSION);
+	const int own = raw_greet(fixture.socket); /* the daemon's own user */
+	CHECK(own >= 0);
+	close(own);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+static void test_unknown_names(void)
+{
+	const char *const arguments[] = {"--allow-users", "no-such-user-here", NULL};
+	fixture_spawn(&fixture, arguments);
+	CHECK_INT(fixture_join(&fixture), 2);
+	CHECK(fixture_logged(&fixture, "allow-users: there is no user \"no-such-user-here\""));
+}
+
+/* ---- limits ---- */
+
+static void check_refused_stream(int fd, uint64_t id, const char *field)
+{
+	struct raw_stream stream;
+	struct raw_reply reply;
+	raw_stream_init(&stream, fd, id);
+	CHECK(!raw_stream_open(&stream, &reply));
+	CHECK_INT(reply.header.type, PURSUIT_MESSAGE_REFUSED);
+	CHECK_INT(reply.refused.code, PURSUIT_REFUSED_LIMIT);
+	CHECK_STRING(reply.refused.field, field);
+	raw_stream_finish(&stream);
+}
+
+static void test_streams_and_bytes(void)
+{
+	const char *const arguments[] = {"--max-streams", "2", "--max-client-mb", "1", NULL};
+	struct raw_stream streams[4];
+	struct raw_reply reply;
+	fixture_start(&fixture, arguments);
+	const int fd = raw_greet(fixture.socket), other = raw_greet(fixture.socket);
+	for (uint64_t i = 0; i < 2; i++) {
+		raw_stream_init(&streams[i], fd, i + 1);
+		CHECK(raw_stream_open(&streams[i], &reply));
+	}
+	check_refused_stream(fd, 3, "stream_id");
+	/* Nobody else is short of anything. */
+	raw_stream_init(&streams[2], other, 1);
+	CHECK(raw_stream_open(&streams[2], &reply));
+	const int large = raw_memfd(UINT64_C(8) << 20, RAW_ALL_SEALS);
+	const struct pursuit_message_open_stream open = raw_open(7, 4, UINT64_C(1) << 20);
+	const int fds[2] = {streams[2].control_fd, large};
+	CHECK_INT(raw_send(other, &open, sizeof(open), fds, 2), 0);
+	CHECK(raw_receive(other, &reply));
+	CHECK_INT(reply.refused.code, PURSUIT_REFUSED_LIMIT);
+	CHECK_STRING(reply.refused.field, "slot_bytes");
+	CHECK(strstr(reply.refused.text, "max-client-mb") != NULL);
+	for (int i = 0; i < 3; i++)
+		raw_stream_finish(&streams[i]);
+	close(large);
+	close(fd);
+	close(other);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+/* A flood ends the connection of the one who floods. */
+static void test_message_rate(void)
+{
+	const char *const arguments[] = {"--max-messages", "50", NULL};
+	const struct pursuit_message_close_stream message = {
+		.header = {.type = PURSUIT_MESSAGE_CLOSE_STREAM, .size = sizeof(message)}, .stream_id = 5};
+	static struct raw_reply reply;
+	fixture_start(&fixture, arguments);
+	const int fd = raw_greet(fixture.socket), other = raw_greet(fixture.socket);
+	bool refused = false;
+	int sent = 0;
+	/* Faster than 50 a second on any machine: even so at most so many in three seconds. */
+	for (uint64_t start = now_ns(); !refused && now_ns() - start < UINT64_C(20000000000); sent++) {
+		if (raw_send(fd, &message, sizeof(message), NULL, 0) < 0 || !raw_receive(fd, &reply))
+			break;
+		refused = reply.header.type == PURSUIT_MESSAGE_REFUSED && strcmp(reply.refused.field, "messages") == 0;
+	}
+	CHECK(refused);
+	CHECK_INT(reply.refused.fatal, 1);
+	CHECK_INT(reply.refused.code, PURSUIT_REFUSED_LIMIT);
+	CHECK(raw_is_gone(fd));
+	CHECK_INT(raw_control(other, "ping", -1, &reply), 0);
+	close(fd);
+	close(other);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+/* ---- seccomp ---- */
+
+static void *do_nothing(void *data)
+{
+	return data;
+}
+
+/* Errors of what is refused, and success of what is not; an exit status that says which failed. */
+static int try_calls(void)
+{
+	char *const arguments[] = {(char *)(uintptr_t) "true", NULL};
+	struct error error;
+	pthread_t thread;
+	if (seccomp_apply(&error) < 0)
+		return 77;
+	if (execv("/bin/true", arguments) == 0 || errno != EPERM)
+		return 1;
+	if (fork() >= 0 || errno != EPERM)
+		return 2;
+	if (socket(AF_INET, SOCK_STREAM, 0) >= 0 || errno != EPERM)
+		return 3;
+	if (setuid(getuid()) == 0 || errno != EPERM)
+		return 4;
+	if (pthread_create(&thread, NULL, do_nothing, NULL) != 0 || pthread_join(thread, NULL) != 0)
+		return 5;
+	const int local = socket(AF_UNIX, SOCK_DGRAM, 0), file = open("/dev/null", O_RDONLY);
+	return local < 0 || file < 0 ? 6 : 0;
+}
+
+static void test_filter(void)
+{
+	int status = 0;
+	fflush(stdout);
+	const pid_t child = fork();
+	if (child == 0)
+		_exit(try_calls());
+	waitpid(child, &status, 0);
+	if (WIFEXITED(status) && WEXITSTATUS(status) == 77)
+		printf("       no seccomp on this machine\n");
+	else
+		CHECK_INT(status, 0);
+}
+
+/* The daemon does all its work behind the filter: streams, frames, a recording, its end. */
+static void test_daemon_behind_filter(void)
+{
+	const char *const arguments[] = {"--seccomp", "--method", "pursuit", NULL};
+	struct raw_stream stream;
+	struct raw_reply reply;
+	struct pursuit_feedback report;
+	char path[64], line[128], record[96];
+	fixture_start(&fixture, arguments);
+	const int fd = raw_greet(fixture.socket);
+	raw_stream_init(&stream, fd, 1);
+	CHECK(raw_stream_open(&stream, &reply));
+	snprintf(record, sizeof(record), "%s/filtered.pursuit", fixture.folder);
+	const int file = open(record, O_CREAT | O_RDWR | O_CLOEXEC, 0600);
+	CHECK_INT(raw_control(fd, "record", file, &reply), 0);
+	for (int i = 0; i < 5; i++) {
+		raw_fill(&stream);
+		raw_publish(&stream);
+		CHECK(raw_feedback(&stream, &report));
+	}
+	CHECK_INT(raw_control(fd, "record-stop", -1, &reply), 0);
+	snprintf(path, sizeof(path), "/proc/%d/status", (int)fixture.pid);
+	FILE *status = fopen(path, "r");
+	bool filtered = false;
+	while (status && fgets(line, sizeof(line), status))
+		filtered |= strncmp(line, "Seccomp:\t2", 10) == 0;
+	if (status)
+		fclose(status);
+	CHECK(filtered);
+	close(file);
+	raw_stream_finish(&stream);
+	close(fd);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+int main(int argc, char **argv)
+{
+	if (argc < 2)
+		return 2;
+	signal(SIGPIPE, SIG_IGN);
+	fixture_init(&fixture, argv[1]);
+	RUN(test_lists);
+	RUN(test_strangers);
+	RUN(test_unknown_names);
+	RUN(test_streams_and_bytes);
+	RUN(test_message_rate);
+	RUN(test_filter);
+	RUN(test_daemon_behind_filter);
+	fixture_finish(&fixture);
+	return test_result();
+}
