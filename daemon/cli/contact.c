@@ -13,7 +13,7 @@
 #include "letters.h"
 
 #define COLUMNS 4u
-#define MAX_ROWS 8u
+#define MAX_ROWS 12u
 #define MAX_CELL_WIDTH 640u
 #define MIN_CELL_WIDTH 320u
 #define GAP 10u

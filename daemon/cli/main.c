@@ -21,6 +21,7 @@ static const struct verb verbs[] = {
 	{"demo", verb_demo, "run the daemon and a scene that feeds it, and report what was displayed"},
 	{"record", verb_record, "write a built-in scene, or what a running daemon receives, into a recording"},
 	{"replay", verb_replay, "play a recording headless and deterministically, score it, compare it"},
+	{"report", verb_report, "error against run time: every method, every scene, as a page"},
 	{"import", verb_import, "make a recording from sequences of images"},
 	{"export", verb_export, "write the frames of a recording as images or video"},
 	{"check-stream", verb_check_stream, "find what is wrong with the motion, depth or times of a stream"},

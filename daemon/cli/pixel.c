@@ -76,6 +76,26 @@ void pixel_write_depth(uint32_t format, const float *depth, uint32_t width, uint
 	}
 }
 
+void pixel_read_depth(uint32_t format, const uint8_t *row, uint32_t width, float *depth)
+{
+	for (uint32_t x = 0; x < width; x++) {
+		uint16_t half;
+		uint32_t word;
+		switch (format) {
+		case PURSUIT_FORMAT_DEPTH16:
+			memcpy(&half, row + 2 * (size_t)x, sizeof(half));
+			depth[x] = (float)half / 65535.0f;
+			break;
+		case PURSUIT_FORMAT_DEPTH24:
+			memcpy(&word, row + 4 * (size_t)x, sizeof(word));
+			depth[x] = (float)(word & 0xffffffu) / 16777215.0f;
+			break;
+		default:
+			memcpy(depth + x, row + 4 * (size_t)x, sizeof(*depth));
+		}
+	}
+}
+
 void pixel_write_motion(uint32_t format, const float *motion, uint32_t width, uint8_t *row)
 {
 	if (format == PURSUIT_FORMAT_RG32F) {
@@ -97,5 +117,22 @@ void pixel_composite(uint8_t *bgra, const uint8_t *ui, uint32_t width)
 			bgra[channel] = (uint8_t)(code > 255u ? 255u : code);
 		}
 		bgra[3] = 255;
+	}
+}
+
+void pixel_shrink(const uint8_t *fine, uint32_t factor, uint32_t width, uint32_t height, uint8_t *bgra)
+{
+	const size_t stride = 4 * (size_t)width * factor;
+	const uint32_t count = factor * factor;
+	for (uint32_t y = 0; y < height; y++) {
+		for (uint32_t x = 0; x < width; x++, bgra += 4) {
+			const uint8_t *block = fine + (size_t)y * factor * stride + 4 * (size_t)x * factor;
+			uint32_t sums[4] = {0};
+			for (uint32_t i = 0; i < count; i++)
+				for (uint32_t channel = 0; channel < 4; channel++)
+					sums[channel] += block[i / factor * stride + 4 * (i % factor) + channel];
+			for (uint32_t channel = 0; channel < 4; channel++)
+				bgra[channel] = (uint8_t)((sums[channel] + count / 2) / count);
+		}
 	}
 }

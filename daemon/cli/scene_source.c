@@ -14,9 +14,12 @@ struct scene_source {
 	struct scene_source_params params;
 	struct gl_context *context;
 	struct scene *scene;
+	struct scene *fine;         /* of many samples a pixel, for colour and UI; NULL: `scene` serves */
+	uint8_t *fine_pixels;       /* room for a picture of it */
 	struct scene_pixels pixels; /* what is read back, packed */
 	uint8_t *planes;            /* laid out as the header of the frame says */
 	uint64_t planes_bytes;
+	bool has_no_ui; /* as seen last: then colour needs `fine` alone */
 };
 
 uint64_t scene_source_time(const struct arg_rate *rate, uint64_t index)
@@ -47,6 +50,20 @@ static bool allocate(struct scene_source *source)
 		   (!source->params.object_id || source->pixels.object_id);
 }
 
+static bool create_fine(struct scene_source *source, struct error *error)
+{
+	const struct scene_source_params *params = &source->params;
+	const uint32_t width = params->size.width * params->antialias, height = params->size.height * params->antialias;
+	if (params->antialias < 2)
+		return true;
+	source->fine = scene_create(params->scene, width, height, gl_context_get_lookup(source->context), error->text,
+								sizeof(error->text));
+	if (!source->fine)
+		return false;
+	source->fine_pixels = malloc(4 * (size_t)width * height);
+	return source->fine_pixels || error_set(error, -ENOMEM, "out of memory for pictures of %ux%u", width, height) == 0;
+}
+
 struct scene_source *scene_source_create(const struct scene_source_params *params, struct error *error)
 {
 	if (!scene_exists(params->scene)) {
@@ -66,9 +83,10 @@ struct scene_source *scene_source_create(const struct scene_source_params *param
 	if (source->context) {
 		source->scene = scene_create(params->scene, params->size.width, params->size.height,
 									 gl_context_get_lookup(source->context), error->text, sizeof(error->text));
-		if (source->scene && allocate(source))
-			return source;
-		if (source->scene)
+		if (source->scene && allocate(source)) {
+			if (create_fine(source, error))
+				return source;
+		} else if (source->scene)
 			error_set(error, -ENOMEM, "out of memory for pictures of %ux%u", params->size.width, params->size.height);
 	}
 	scene_source_destroy(&source);
@@ -80,8 +98,11 @@ void scene_source_destroy(struct scene_source **source)
 	if (!source || !*source)
 		return;
 	struct scene_source *old = *source;
-	if (old->scene && gl_context_make_current(old->context))
+	if (old->scene && gl_context_make_current(old->context)) {
 		scene_destroy(&old->scene);
+		if (old->fine)
+			scene_destroy(&old->fine);
+	}
 	gl_context_destroy(&old->context);
 	free(old->pixels.color);
 	free(old->pixels.ui);
@@ -90,6 +111,7 @@ void scene_source_destroy(struct scene_source **source)
 	free(old->pixels.forward);
 	free(old->pixels.object_id);
 	free(old->planes);
+	free(old->fine_pixels);
 	free(old);
 	*source = NULL;
 }
@@ -169,6 +191,27 @@ static bool render(struct scene_source *source, const struct scene_request *requ
 	return true;
 }
 
+/* Colour and UI of many samples instead of those that `scene` gave. */
+static bool read_fine(struct scene_source *source, const struct scene_request *request,
+					  const struct scene_pixels *wanted)
+{
+	const struct scene_request still = {.time = request->time, .time_previous = request->time};
+	const struct scene_source_params *params = &source->params;
+	if (!source->fine || !wanted->color)
+		return true;
+	if (!scene_render(source->fine, &still, NULL, NULL))
+		return false;
+	if (!scene_read(source->fine, &(struct scene_pixels){.color = source->fine_pixels}))
+		return false;
+	pixel_shrink(source->fine_pixels, params->antialias, params->size.width, params->size.height, wanted->color);
+	if (!wanted->ui)
+		return true;
+	if (!scene_read(source->fine, &(struct scene_pixels){.ui = source->fine_pixels}))
+		return false;
+	pixel_shrink(source->fine_pixels, params->antialias, params->size.width, params->size.height, wanted->ui);
+	return true;
+}
+
 bool scene_source_render(struct scene_source *source, double time, double time_previous,
 						 struct scene_textures *textures, struct scene_camera *camera)
 {
@@ -198,7 +241,7 @@ bool scene_source_frame(struct scene_source *source, uint64_t index, struct fram
 		return false;
 	struct scene_pixels wanted = source->pixels;
 	wanted.ui = has_ui ? wanted.ui : NULL;
-	if (!scene_read(source->scene, &wanted))
+	if (!scene_read(source->scene, &wanted) || !read_fine(source, &request, &wanted))
 		return false;
 	*frame = (struct frame){.intake_ns = 0};
 	describe(source, index, &camera, has_ui, &frame->header);
@@ -220,22 +263,45 @@ bool scene_source_frame(struct scene_source *source, uint64_t index, struct fram
 	return true;
 }
 
-bool scene_source_truth(struct scene_source *source, double time, uint8_t *picture)
+static void put_ui(const struct scene_source *source, size_t pixel, const struct scene_pixels *wanted)
 {
-	struct scene_request request = {.time = time, .time_previous = time, .time_next = time};
+	if (wanted->color)
+		pixel_composite(wanted->color + 4 * pixel, source->pixels.ui + 4 * pixel, 1);
+	if (source->pixels.ui[4 * pixel + 3] < 128)
+		return;
+	if (wanted->backward)
+		memset(wanted->backward + 2 * pixel, 0, 2 * sizeof(float));
+	if (wanted->forward)
+		memset(wanted->forward + 2 * pixel, 0, 2 * sizeof(float));
+	if (wanted->object_id)
+		wanted->object_id[pixel] = SCENE_SOURCE_UI_OBJECT;
+}
+
+bool scene_source_moment(struct scene_source *source, const struct scene_request *request,
+						 const struct scene_pixels *wanted)
+{
 	struct scene_camera camera;
+	struct scene_pixels read = *wanted;
 	bool has_ui;
-	if (!render(source, &request, &has_ui, &camera))
+	const bool geometry = wanted->depth || wanted->backward || wanted->forward || wanted->object_id;
+	if (source->fine && !geometry && source->has_no_ui)
+		return gl_context_make_current(source->context) && read_fine(source, request, wanted);
+	if (!render(source, request, &has_ui, &camera))
 		return false;
-	struct scene_pixels wanted = {.color = picture, .ui = has_ui ? source->pixels.ui : NULL};
-	if (!scene_read(source->scene, &wanted))
+	source->has_no_ui = !has_ui;
+	read.ui = has_ui ? source->pixels.ui : NULL;
+	if (!scene_read(source->scene, &read) || !read_fine(source, request, &read))
 		return false;
 	size_t pixels = (size_t)source->params.size.width * source->params.size.height;
-	if (has_ui)
-		for (uint32_t y = 0; y < source->params.size.height; y++)
-			pixel_composite(picture + 4 * (size_t)y * source->params.size.width,
-							source->pixels.ui + 4 * (size_t)y * source->params.size.width, source->params.size.width);
-	for (size_t i = 0; i < pixels; i++)
-		picture[4 * i + 3] = 255;
+	for (size_t i = 0; has_ui && i < pixels; i++)
+		put_ui(source, i, wanted);
+	for (size_t i = 0; wanted->color && i < pixels; i++)
+		wanted->color[4 * i + 3] = 255;
 	return true;
+}
+
+bool scene_source_truth(struct scene_source *source, double time, uint8_t *picture)
+{
+	const struct scene_request request = {.time = time, .time_previous = time, .time_next = time};
+	return scene_source_moment(source, &request, &(struct scene_pixels){.color = picture});
 }

@@ -29,6 +29,7 @@ struct scene_source_params {
 	uint32_t depth_format;  /* 0: DEPTH32F */
 	uint32_t motion_format; /* 0: RG16F */
 	bool object_id;
+	uint32_t antialias; /* colour and UI are means of this many samples along each side; 0: 1 */
 };
 
 struct scene_source;
@@ -43,6 +44,15 @@ bool scene_source_frame(struct scene_source *source, uint64_t index, struct fram
 /* The truth at a moment, in seconds: BGRA8 with the UI over it, packed rows, alpha 255, into width x height x 4 bytes.
  */
 bool scene_source_truth(struct scene_source *source, double time, uint8_t *picture);
+
+/*
+ * Any moment with motion from any other, read back as scene_read() does what `wanted` asks for; colour has the UI over
+ * it and alpha 255. Where the UI covers what is behind it by half or more, the motion is that of the UI, 0, and the
+ * object SCENE_SOURCE_UI_OBJECT. False: GL failed.
+ */
+#define SCENE_SOURCE_UI_OBJECT UINT32_MAX
+bool scene_source_moment(struct scene_source *source, const struct scene_request *request,
+						 const struct scene_pixels *wanted);
 
 /*
  * Renders a moment, with motion since time_previous, and leaves it in textures

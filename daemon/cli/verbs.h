@@ -14,6 +14,7 @@ int verb_export(int argc, char **argv);
 int verb_import(int argc, char **argv);
 int verb_record(int argc, char **argv);
 int verb_replay(int argc, char **argv);
+int verb_report(int argc, char **argv);
 int verb_status(int argc, char **argv);
 
 #endif

@@ -5,7 +5,7 @@ import re
 
 import common
 
-VERBS = ["demo", "record", "replay", "import", "export", "status"]
+VERBS = ["demo", "record", "replay", "report", "import", "export", "status"]
 
 
 class Usage(common.Case):

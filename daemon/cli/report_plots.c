@@ -1,0 +1,264 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The plots, drawn by gnuplot: DIR/plots/NAME.gp is script and data in one,
+ * and can be run again by hand; NAME.svg is what it draws.
+ */
+
+#include <errno.h>
+#include <math.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "report.h"
+#include "report_overall.h"
+
+/* Told apart by people with any colour vision (Okabe and Ito 2008), and by shape. */
+static const char *const colors[] = {"#000000", "#e69f00", "#56b4e9", "#009e73", "#b8a800",
+									 "#0072b2", "#d55e00", "#cc79a7", "#7a4a2b", "#888888"};
+#define COLORS (sizeof(colors) / sizeof(*colors))
+
+struct plot {
+	FILE *script;
+	char path[4096]; /* without .gp */
+};
+
+static bool plot_open(struct plot *plot, const struct report *report, const char *name, uint32_t width, uint32_t height)
+{
+	char path[4128];
+	snprintf(plot->path, sizeof(plot->path), "%s/plots/%s", report->options.out, name);
+	snprintf(path, sizeof(path), "%s.gp", plot->path);
+	plot->script = fopen(path, "we");
+	if (!plot->script)
+		return false;
+	fprintf(plot->script,
+			"set terminal svg size %u,%u font 'Helvetica,Arial,sans-serif,14' background '#ffffff'\n"
+			"set output '%s.svg'\nset grid linecolor '#dddddd'\nset border 3\nset tics nomirror\n"
+			"set key outside right top vertical samplen 1.5 noenhanced\n",
+			width, height, name);
+	return true;
+}
+
+/* Runs gnuplot in the folder of the plots. False: it could not, or did not like the script. */
+static bool plot_close(struct plot *plot, const struct report *report)
+{
+	char folder[4096], file[256];
+	posix_spawn_file_actions_t actions;
+	pid_t child;
+	int status = 1;
+	fclose(plot->script);
+	snprintf(folder, sizeof(folder), "%s/plots", report->options.out);
+	snprintf(file, sizeof(file), "%s.gp", strrchr(plot->path, '/') + 1);
+	char *arguments[] = {(char[]){"gnuplot"}, file, NULL};
+	posix_spawn_file_actions_init(&actions);
+	posix_spawn_file_actions_addchdir_np(&actions, folder);
+	const int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
+	posix_spawn_file_actions_destroy(&actions);
+	if (failed)
+		return false;
+	while (waitpid(child, &status, 0) < 0 && errno == EINTR)
+		;
+	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+/* ---- methods: the plain variants, in the order of the engine's list ---- */
+
+static uint32_t color_of(const struct report *report, const struct report_variant *variant)
+{
+	uint32_t color = 0;
+	for (const struct report_variant *one = report->variants; one < variant; one++)
+		color += one->plain && strcmp(one->method, variant->method) != 0;
+	return color % COLORS;
+}
+
+static const struct report_variant *plain_variant(const struct report *report, const struct report_variant *variant)
+{
+	for (uint32_t i = 0; i < report->variant_count; i++) {
+		if (report->variants[i].plain && strcmp(report->variants[i].method, variant->method) == 0)
+			return &report->variants[i];
+	}
+	return variant;
+}
+
+/* ---- error against run time ---- */
+
+static int compare_points(const void *a, const void *b)
+{
+	const struct report_point *left = a, *right = b;
+	return left->ms < right->ms ? -1 : left->ms > right->ms;
+}
+
+static void write_front(FILE *script, struct report_point *points, uint32_t count)
+{
+	double least = (double)INFINITY;
+	qsort(points, count, sizeof(*points), compare_points);
+	fprintf(script, "$front << EOD\n");
+	for (uint32_t i = 0; i < count; i++) {
+		if (points[i].error >= least)
+			continue;
+		least = points[i].error;
+		fprintf(script, "%g %g\n", points[i].ms, points[i].error);
+	}
+	fprintf(script, "EOD\n");
+}
+
+static void write_points(const struct report *report, FILE *script, const struct report_point *points, uint32_t count)
+{
+	for (uint32_t i = 0; i < count; i++) {
+		fprintf(script, "$p%u << EOD\n%g %g %g %g \"%s\"\nEOD\n", i, points[i].ms, points[i].ms_low, points[i].ms_high,
+				points[i].error, points[i].variant->plain ? "" : points[i].variant->setting);
+	}
+	fprintf(script, "plot $front using 1:2 with steps linewidth 2 linecolor '#bbbbbb' title 'Pareto front'");
+	for (uint32_t i = 0; i < count; i++) {
+		const struct report_variant *variant = points[i].variant;
+		const uint32_t color = color_of(report, plain_variant(report, variant));
+		fprintf(script,
+				", \\\n $p%u using 1:4:2:3 with xerrorbars linecolor '%s' pointtype %u pointsize %s linewidth %s", i,
+				colors[color], 4 + color % 10, variant->plain ? "1.2" : "0.6", variant->plain ? "1.6" : "1");
+		if (variant->plain)
+			fprintf(script, " title '%s'", variant->method);
+		else
+			fprintf(script, " notitle, \\\n $p%u using 1:4:5 with labels left offset 0.6,0.4 font ',9' textcolor '%s' "
+							"noenhanced notitle",
+					i, colors[color]);
+	}
+}
+
+/* What the display itself leaves, as a line. */
+static void write_rendered(const struct report *report, const struct report_work *work, FILE *script)
+{
+	const struct report_variant *last = &report->variants[report->variant_count - 1];
+	const struct report_row *row = work ? report_find_row(report, work, last) : NULL;
+	const double error = row    ? score_value(&row->score, SCORE_PERCEIVED_ERROR)
+						 : work ? (double)NAN
+								: report_mean(report, last, SCORE_PERCEIVED_ERROR);
+	if (!last->engine && isfinite(error))
+		fprintf(script, ", \\\n %g with lines dashtype 2 linecolor '#555555' title 'every frame rendered'", error);
+}
+
+static bool plot_pareto(const struct report *report, const struct report_work *work, const char *name,
+						const char *title)
+{
+	struct plot plot;
+	struct report_point *points = calloc(report->variant_count + 1u, sizeof(*points));
+	uint32_t count = points ? report_points(report, work, points) : 0;
+	bool drawn = true;
+	if (count > 0 && plot_open(&plot, report, name, work ? 560 : 900, work ? 380 : 520)) {
+		fprintf(plot.script, "set title '%s' noenhanced\nset logscale x\nset xlabel 'engine, ms for each displayed "
+							 "frame (median and middle half)'\nset ylabel '%s'\nset yrange [0:*]\n",
+				title,
+				work && work->recording ? "root mean square error, code values" : "perceived error, code values");
+		write_front(plot.script, points, count);
+		write_points(report, plot.script, points, count);
+		write_rendered(report, work, plot.script);
+		fputc('\n', plot.script);
+		drawn = plot_close(&plot, report);
+	}
+	free(points);
+	return drawn;
+}
+
+/* ---- error over time, error against speed ---- */
+
+static void write_series(FILE *script, uint32_t index, const json_t *series)
+{
+	double last = (double)NAN;
+	fprintf(script, "$s%u << EOD\n", index);
+	for (size_t i = 0; i < json_array_size(series); i++) {
+		const double time = json_number_value(json_array_get(json_array_get(series, i), 0));
+		if (time - last > 0.5)
+			fputc('\n', script);
+		last = time;
+		fprintf(script, "%g %g\n", time, json_number_value(json_array_get(json_array_get(series, i), 1)));
+	}
+	fprintf(script, "EOD\n");
+}
+
+static bool plot_time(const struct report *report, const struct report_work *work, const char *name)
+{
+	struct plot plot;
+	if (!plot_open(&plot, report, name, 560, 380))
+		return false;
+	fprintf(plot.script,
+			"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene, s'\nset ylabel 'PSNR of in-betweens, dB'\n",
+			work->name, work->n);
+	for (uint32_t i = 0; i < report->row_count; i++) {
+		if (report->rows[i].work == work && report->rows[i].variant->plain && report->rows[i].variant->engine)
+			write_series(plot.script, i, report->rows[i].score.over_time);
+	}
+	const char *separator = "plot ";
+	for (uint32_t i = 0; i < report->row_count; i++) {
+		const struct report_row *row = &report->rows[i];
+		if (row->work != work || !row->variant->plain || !row->variant->engine ||
+			json_array_size(row->score.over_time) == 0)
+			continue;
+		const uint32_t color = color_of(report, row->variant);
+		fprintf(plot.script, "%s$s%u using 1:2 with linespoints linecolor '%s' pointtype %u pointsize 0.5 title '%s'",
+				separator, i, colors[color], 4 + color % 10, row->variant->method);
+		separator = ", \\\n ";
+	}
+	fputc('\n', plot.script);
+	return plot_close(&plot, report);
+}
+
+static bool plot_speed(const struct report *report)
+{
+	struct plot plot;
+	if (!plot_open(&plot, report, "speed", 900, 520))
+		return false;
+	fprintf(plot.script, "set title 'Perceived error against the speed of motion, all scenes, N = %u'\n"
+						 "set xlabel 'speed of the true motion, pixels a second (upper end of each class)'\n"
+						 "set ylabel 'perceived error, code values'\nset logscale x 2\nset yrange [0:*]\n",
+			report->works[0].n);
+	const char *separator = "plot ";
+	for (int pass = 0; pass < 2; pass++) {
+		for (uint32_t v = 0; v < report->variant_count; v++) {
+			const struct report_variant *variant = &report->variants[v];
+			struct squared_error bins[CAMERA_SPEEDS];
+			if (!variant->plain || !report_speed_bins(report, variant, bins))
+				continue;
+			if (pass == 0) {
+				fprintf(plot.script, "$s%u << EOD\n", v);
+				for (uint32_t bin = 0; bin < CAMERA_SPEEDS; bin++) {
+					if (bins[bin].count > 2000)
+						fprintf(plot.script, "%g %g\n", 7.5 * (1u << bin), squared_error_root(&bins[bin]));
+				}
+				fprintf(plot.script, "EOD\n");
+				continue;
+			}
+			const uint32_t color = color_of(report, variant);
+			fprintf(plot.script, "%s$s%u using 1:2 with linespoints linecolor '%s' pointtype %u title '%s'", separator,
+					v, colors[color], 4 + color % 10, variant->method);
+			separator = ", \\\n ";
+		}
+	}
+	fputc('\n', plot.script);
+	return plot_close(&plot, report);
+}
+
+/* ---- all ---- */
+
+bool report_draw_plots(const struct report *report)
+{
+	char name[REPORT_NAME], title[160];
+	bool scenes = false, drawn = true;
+	for (uint32_t i = 0; i < report->work_count && drawn; i++) {
+		const struct report_work *work = &report->works[i];
+		if (!report->galleries[i].work)
+			continue;
+		scenes |= !work->recording;
+		report_plot_name(name, "error", report, i);
+		snprintf(title, sizeof(title), "%s, N = %u, %ux%u", work->name, work->n, work->size.width, work->size.height);
+		drawn = plot_pareto(report, work, name, title);
+		report_plot_name(name, "time", report, i);
+		drawn = drawn && plot_time(report, work, name);
+	}
+	if (scenes && drawn)
+		drawn = plot_pareto(report, NULL, "overall", "Error against run time, mean of all scenes that move") &&
+				plot_speed(report);
+	return drawn;
+}

@@ -1,0 +1,225 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "interrupt.h"
+#include "report.h"
+#include "verbs.h"
+
+#define VERB "report"
+
+static bool read_options(struct report_options *options, int argc, char **argv, int *status)
+{
+	const struct arg_row rows[] = {
+		{"scenes", ARG_TEXT, &options->scenes, 0, 0, NULL, "LIST", "built-in scenes, separated by commas; all, none"},
+		{"recordings", ARG_TEXT, &options->recordings, 0, 0, NULL, "LIST",
+		 "recordings, separated by commas; each frame predicts the next"},
+		{"methods", ARG_TEXT, &options->methods, 0, 0, NULL, "LIST", "methods; by default all that there are"},
+		{"sizes", ARG_TEXT, &options->sizes, 0, 0, NULL, "LIST", "of the scenes; by default 640x360"},
+		{"n", ARG_TEXT, &options->ns, 0, 0, NULL, "LIST",
+		 "displayed frames for each real one, 2 to 8; by default 2,3, with --full 2,3,4"},
+		{"vary", ARG_TEXT, &options->vary, 0, 0, NULL, "LIST",
+		 "methods that are also tried with the settings of --settings; by default grid; all, none"},
+		{"settings", ARG_TEXT, &options->settings_list, 0, 0, NULL, "LIST",
+		 "such as cell=4,blur=off,cell=16+blur=off; by default cell=4,cell=16,blur=off,blur=everywhere"},
+		{"refresh", ARG_RATE, &options->refresh, 0, 0, NULL, "HZ", "of the display; by default 120"},
+		{"antialias", ARG_NUMBER, &options->antialias, 1, 4, NULL, "K",
+		 "K x K samples for each pixel of a scene; by default 2, as games are antialiased; 1: the scenes as they are"},
+		{"full", ARG_FLAG, &options->full, 0, 0, NULL, NULL, "more moments, longer clips, more samples; takes long"},
+		{"out", ARG_TEXT, &options->out, 0, 0, NULL, "DIR",
+		 "for report.json, report.csv, report.html, plots and pictures; by default out-report"},
+		{"tables", ARG_TEXT, &options->tables, 0, 0, NULL, "LIST",
+		 "JSON files of other programs with tables for the page: {\"title\", \"columns\", \"rows\"} or a list of them"},
+		{"baseline", ARG_TEXT, &options->baseline, 0, 0, NULL, "OLD.json", "print what changed since that report"},
+		{"fail-worse", ARG_REAL, &options->fail_worse, 0, 1000, NULL, "PERCENT",
+		 "with --baseline: exit status 1 if a measure of a row got worse by more than this"},
+		{"fail-under", ARG_TEXT, &options->fail_under, 0, 0, NULL, "LIMITS",
+		 "exit status 1, and the rows named, if a row is worse: psnr=30,perceived_error=4"},
+		{NULL},
+	};
+	const struct args args = {
+		.verb = VERB,
+		.usage = "[options]",
+		.summary = "Error against run time: plays scenes and recordings with every method and some settings, measures\n"
+				   "engine time, what an eye sees of the display, and the rest, and writes report.json, report.csv (one\n"
+				   "row for each scene, method and setting) and report.html. Ctrl-C ends it early with what it has.",
+		.examples = "  pursuit report\n"
+					"      all scenes and methods, about ten minutes on two cores\n"
+					"  pursuit report --scenes tower,fan --methods hold,grid --n 2 --out before\n"
+					"  pursuit report --scenes tower,fan --methods hold,grid --n 2 --baseline before/report.json\n"
+					"      what changed between the two\n"
+					"  pursuit report --scenes none --recordings walk.pursuit\n"
+					"      a recording of your own\n"
+					"  pursuit report --scenes colonnade --methods grid --n 2 --fail-under perceived_error=6\n"
+					"      for continuous integration\n",
+		.rows = rows,
+		.settings = &options->settings,
+		.groups = 1u << OPTION_ENGINE,
+	};
+	return args_parse(&args, argc, argv, status);
+}
+
+static void set_defaults(struct report_options *options)
+{
+	if (!options->scenes)
+		options->scenes = "all";
+	if (!options->sizes)
+		options->sizes = options->full ? "640x360,1280x720" : "640x360";
+	if (!options->ns)
+		options->ns = options->full ? "2,3,4" : "2,3";
+	if (!options->vary)
+		options->vary = "grid";
+	if (!options->settings_list)
+		options->settings_list = "cell=4,cell=16,blur=off,blur=everywhere";
+	if (!options->refresh.numerator)
+		options->refresh = (struct arg_rate){120, 1};
+	if (!options->antialias)
+		options->antialias = 2;
+	if (!options->out)
+		options->out = "out-report";
+}
+
+static int check_options(const struct report_options *options)
+{
+	struct error error;
+	if (options->fail_under && !report_check_limits(options->fail_under, &error))
+		return args_wrong(VERB, "--fail-under is %s, must be %s", options->fail_under, error.text);
+	if (options->fail_worse >= 0.0 && !options->baseline)
+		return args_wrong(VERB, "--fail-worse goes with --baseline");
+	if (strlen(options->out) > 3000)
+		return args_wrong(VERB, "--out is too long");
+	return STATUS_DONE;
+}
+
+/* ---- tables of other programs ---- */
+
+static bool is_table(const json_t *table)
+{
+	return json_is_string(json_object_get(table, "title")) && json_is_array(json_object_get(table, "columns")) &&
+		   json_is_array(json_object_get(table, "rows"));
+}
+
+static int load_tables(struct report *report, const char *path, struct error *error)
+{
+	json_error_t why;
+	json_t *file = json_load_file(path, 0, &why);
+	if (!file)
+		return error_set(error, -EINVAL, "%s: %s", path, why.text);
+	bool right = json_is_array(file) || is_table(file);
+	for (size_t i = 0; i < json_array_size(file); i++)
+		right &= is_table(json_array_get(file, i));
+	if (right && json_is_array(file))
+		json_array_extend(report->tables, file);
+	else if (right)
+		json_array_append(report->tables, file);
+	json_decref(file);
+	return right ? 0 : error_set(error, -EINVAL, "%s: a table needs title, columns and rows", path);
+}
+
+static int load_all_tables(struct report *report, struct error *error)
+{
+	int result = 0;
+	char *list = report->options.tables ? strdup(report->options.tables) : NULL, *rest = NULL;
+	report->tables = json_array();
+	if (!report->tables)
+		result = error_set(error, -ENOMEM, "out of memory");
+	for (char *path = list ? strtok_r(list, ",", &rest) : NULL; path && result == 0; path = strtok_r(NULL, ",", &rest))
+		result = load_tables(report, path, error);
+	free(list);
+	return result;
+}
+
+/* ---- the run ---- */
+
+static double now_s(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + (double)now.tv_nsec / 1e9;
+}
+
+static void note_start(struct report *report)
+{
+	const time_t now = time(NULL);
+	struct tm broken;
+	if (gmtime_r(&now, &broken))
+		strftime(report->started, sizeof(report->started), "%Y-%m-%d %H:%M UTC", &broken);
+}
+
+static int measure(struct report *report, struct error *error)
+{
+	const double start = now_s();
+	struct report_writer *writer = report_writer_create(report->options.out, error);
+	int result = writer ? load_all_tables(report, error) : -EIO;
+	if (result == 0)
+		result = report_start_engines(report, error);
+	if (result == 0)
+		result = report_run(report, writer, error);
+	report_writer_destroy(&writer);
+	report->seconds = now_s() - start;
+	return result;
+}
+
+/* Also after a failure: what there is, is kept. */
+static int write_all(struct report *report, struct error *error)
+{
+	if (report->row_count == 0)
+		return 0;
+	int result = report_write_json(report, error);
+	report->plots = result == 0 && report_draw_plots(report);
+	if (result == 0 && !report->plots)
+		fprintf(stderr, "pursuit report: no plots, since gnuplot is not installed or failed (Debian: gnuplot-nox); "
+						"report.json and report.csv are complete\n");
+	return result == 0 ? report_write_page(report, error) : result;
+}
+
+static int judge(const struct report *report)
+{
+	const struct report_options *options = &report->options;
+	uint32_t worse = 0, beyond = report_below_limits(report, stderr);
+	struct error error;
+	if (options->baseline && report_compare(report, options->baseline, options->fail_worse, &worse, stdout, &error) < 0)
+		return args_failed(VERB, "%s", error.text);
+	return worse || beyond ? STATUS_FAILED : STATUS_DONE;
+}
+
+static int run(struct report *report)
+{
+	struct error error = {{0}}, later = {{0}};
+	interrupt_watch();
+	note_start(report);
+	const int result = measure(report, &error);
+	const int written = write_all(report, &later);
+	if (report->row_count) {
+		report_print(report, stdout);
+		printf("%u rows in %.0f s; see %s/report.html\n", report->row_count, report->seconds, report->options.out);
+	}
+	if (result < 0)
+		return args_failed(VERB, "%s", error.text);
+	if (written < 0)
+		return args_failed(VERB, "%s", later.text);
+	if (report->interrupted)
+		return args_failed(VERB, "interrupted; what was measured until then is kept in %s", report->options.out);
+	return judge(report);
+}
+
+int verb_report(int argc, char **argv)
+{
+	struct report report = {.options = {.fail_worse = -1.0}};
+	int status;
+	settings_defaults(&report.options.settings);
+	if (!read_options(&report.options, argc, argv, &status))
+		return status;
+	set_defaults(&report.options);
+	status = check_options(&report.options);
+	if (status == STATUS_DONE)
+		status = report_plan(&report);
+	if (status == STATUS_DONE)
+		status = run(&report);
+	report_finish(&report);
+	return status;
+}

@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: MIT
+"""The report: files, limits, an interrupt, a baseline, recordings, a machine without gnuplot."""
+import csv
+import html.parser
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+
+import common
+
+SMALL = ["--scenes", "fan", "--methods", "hold,grid", "--sizes", "96x54", "--n", "2", "--vary", "none", "--antialias", "1"]
+
+
+class Page(html.parser.HTMLParser):
+    """What must hold of a page that opens without a network: tags close, nothing is fetched."""
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.fetched, self.images, self.text = [], [], 0, ""
+
+    def handle_starttag(self, tag, attributes):
+        for name, value in attributes:
+            if name in ("src", "href") and not value.startswith("data:"):
+                self.fetched.append(value)
+        self.images += tag == "img"
+        if tag not in ("img", "meta", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            raise ValueError(f"</{tag}> closes nothing")
+
+    def handle_data(self, data):
+        self.text += data
+
+
+class Report(common.Case):
+    def report(self, *arguments, status=0, out="out", **options):
+        return self.must("report", *arguments, "--out", self.path(out), status=status, **options)
+
+    def load(self, out="out"):
+        with open(self.path(out + "/report.json")) as file:
+            report = json.load(file)
+        with open(self.path(out + "/report.csv"), newline="") as file:
+            rows = list(csv.DictReader(file))
+        page = Page()
+        with open(self.path(out + "/report.html")) as file:
+            page.feed(file.read())
+        self.assertEqual((page.open, page.fetched), ([], []))
+        return report, rows, page
+
+    def value(self, report, method, measure, setting="default"):
+        (row,) = [row for row in report["rows"] if row["method"] == method and row["setting"] == setting]
+        return row["measures"][measure]["value"]
+
+    def test_files(self):
+        text = self.report(*SMALL).stdout
+        report, rows, page = self.load()
+        self.assertEqual([row["method"] for row in rows], ["hold", "grid", "rendered"])
+        self.assertTrue(report["complete"])
+        for in_json, in_csv in zip(report["rows"], rows):
+            self.assertEqual((in_csv["source"], in_csv["setting"], in_csv["n"]), ("fan", "default", "2"))
+            for name, measure in in_json["measures"].items():
+                if measure["value"] is not None:
+                    self.assertAlmostEqual(float(in_csv[name]), measure["value"], delta=1e-4 * abs(measure["value"]) + 1e-9)
+        self.assertGreater(report["rows"][1]["engine_ms"]["p50"], 0)
+        self.assertGreaterEqual(report["rows"][1]["engine_ms"]["frames"], 30)
+        self.assertGreater(report["rows"][1]["bytes_down"], 96 * 54 * 4 - 1)
+        for words in ["grid", "perceived error", "What the measures are", "truth, 960 Hz"]:
+            self.assertIn(words, page.text)
+        self.assertGreaterEqual(page.images, 4)
+        self.assertIn("grid", text)
+
+    def test_measures_tell_methods_apart(self):
+        """What each measure is for: a wrong one would not keep these orders. Motion of some pixels a real frame."""
+        self.report("--scenes", "colonnade", "--methods", "hold,black,blur-hold,grid", "--sizes", "240x135", "--n", "4",
+                    "--vary", "none")
+        report, _, _ = self.load()
+        self.assertLess(self.value(report, "grid", "perceived_error"), self.value(report, "hold", "perceived_error"))
+        self.assertLess(self.value(report, "rendered", "perceived_error"), self.value(report, "grid", "perceived_error"))
+        for method in ["black", "blur-hold"]:
+            self.assertLess(self.value(report, "grid", "perceived_error"), self.value(report, method, "perceived_error"))
+        self.assertAlmostEqual(self.value(report, "hold", "perceived_lag_ms"), 1000 / 60, delta=1.1)
+        self.assertEqual(self.value(report, "black", "ripple"), 1)
+        self.assertAlmostEqual(self.value(report, "rendered", "perceived_lag_ms"), 500 / 120, delta=1.1)
+        self.assertEqual(self.value(report, "rendered", "psnr"), 100)
+        self.assertEqual(self.value(report, "rendered", "tpsnr"), 100)
+        self.assertEqual(self.value(report, "hold", "ripple"), 0)
+        for measure in ["psnr", "psnr_moving", "tpsnr", "ssim"]:
+            self.assertGreater(self.value(report, "grid", measure), self.value(report, "hold", measure), measure)
+        self.assertLess(self.value(report, "grid", "energy_error"), self.value(report, "hold", "energy_error"))
+
+    def test_still_is_perfect(self):
+        self.report("--scenes", "still", *SMALL[2:])
+        report, _, _ = self.load()
+        for method in ["hold", "grid"]:
+            self.assertEqual(self.value(report, method, "perceived_psnr"), 100)
+            self.assertEqual(self.value(report, method, "psnr"), 100)
+            self.assertLess(self.value(report, method, "energy_error"), 1e-6)
+            self.assertIsNone(self.value(report, method, "psnr_moving"))
+
+    def test_settings_and_n(self):
+        self.report("--scenes", "fan", "--methods", "grid", "--sizes", "64x36", "--n", "2,3", "--settings",
+                    "cell=16,cell=4+blur=off", "--antialias", "1", "--cell", "12")
+        report, rows, _ = self.load()
+        self.assertEqual([(row["setting"], row["n"]) for row in rows],
+                         [("default", "2"), ("cell=16", "2"), ("cell=4+blur=off", "2"), ("default", "2"),
+                          ("default", "3"), ("default", "3")])
+        self.assertEqual([row["settings"]["cell"] for row in report["rows"][:3]], ["12", "16", "4"])
+        self.assertEqual(report["rows"][2]["settings"]["blur"], "off")
+
+    def test_limits_name_the_case(self):
+        """This is how a broken pass turns a named case red."""
+        self.report(*SMALL, "--fail-under", "psnr=5,perceived_error=100")
+        result = self.report(*SMALL, "--fail-under", "psnr=99", status=1)
+        self.assertRegex(result.stderr, r"fan, grid, default, N = 2, 96x54: psnr is \d+\.\d+, the limit is 99")
+        self.assertNotIn("rendered", result.stderr)
+        result = self.report(*SMALL, "--fail-under", "perceived_error=0.01", status=1)
+        self.assertIn("perceived_error is", result.stderr)
+
+    def test_baseline(self):
+        self.report(*SMALL)
+        baseline = self.path("out/report.json")
+        same = self.report(*SMALL, "--baseline", baseline, "--fail-worse", "0.5", out="same").stdout
+        self.assertIn("3 of 3 rows are in both", same)
+        self.assertNotIn("perceived", same.split("Since")[1])
+        changed = self.report(*SMALL, "--cell", "32", "--baseline", baseline, "--fail-worse", "0.5", out="changed", status=1)
+        after = changed.stdout.split("Since")[1]
+        self.assertRegex(after, r"fan, grid, default, N = 2, 96x54\n(  .*\n)*  psnr +\d+\.\d+ -> \d+\.\d+ dB .worse; spread .*TOO MUCH")
+        self.assertNotIn("fan, rendered", after)
+        with open(self.path("bad.json"), "w") as file:
+            file.write("{}")
+        self.assertIn("is no report.json", self.report(*SMALL, "--baseline", self.path("bad.json"), status=1).stderr)
+
+    def test_an_interrupt_keeps_rows(self):
+        command = [common.PURSUIT, "report", "--scenes", "fan,rings,trees,tower,creature,colonnade", *SMALL[2:], "--out",
+                   self.path("out")]
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            path, deadline = self.path("out/report.csv"), time.monotonic() + 200
+            while time.monotonic() < deadline and process.poll() is None:
+                if os.path.exists(path) and os.path.getsize(path) > 900:
+                    break
+                time.sleep(0.02)
+            process.send_signal(signal.SIGINT)
+            _, error = process.communicate(timeout=200)
+        if process.returncode == 0:
+            self.skipTest("it was done before it could be interrupted")
+        self.assertEqual(process.returncode, 1, error)
+        self.assertIn("interrupted", error)
+        report, rows, page = self.load()
+        self.assertFalse(report["complete"])
+        self.assertEqual(len(report["rows"]), len(rows))
+        self.assertTrue(3 <= len(rows) < 18, len(rows))
+        self.assertIn("interrupted", page.text)
+
+    def test_a_recording(self):
+        path = self.record("walk.pursuit", size="96x54")
+        self.report("--scenes", "none", "--recordings", path, "--methods", "hold,grid", "--vary", "none")
+        report, rows, page = self.load()
+        self.assertEqual([(row["source"], row["kind"], row["method"]) for row in rows],
+                         [("walk", "recording", "hold"), ("walk", "recording", "grid")])
+        self.assertEqual((rows[0]["width"], rows[0]["perceived_error"]), ("96", ""))
+        psnr = self.figures("replay", path, "--predict", "--method", "grid")
+        first = [frame["displayed"][0]["psnr"] for frame in psnr["frames"][:12]]
+        self.assertAlmostEqual(self.value(report, "grid", "psnr"), sum(first) / len(first), places=4)
+        self.assertIn("guessed", page.text)
+        self.assertIn("none.pursuit", self.report("--scenes", "none", "--recordings", self.path("none.pursuit"), "--methods",
+                                                  "hold", out="none", status=1).stderr)
+
+    def test_tables_of_others(self):
+        table = {"title": "Stability & bounds", "columns": ["case", "worst"], "rows": [["a < b", 0.25], ["c", None]]}
+        with open(self.path("table.json"), "w") as file:
+            json.dump(table, file)
+        self.report(*SMALL, "--tables", self.path("table.json"))
+        report, _, page = self.load()
+        self.assertEqual(report["tables"], [table])
+        self.assertIn("Stability & bounds", page.text)
+        self.assertIn("a < b", page.text)
+        with open(self.path("table.json"), "w") as file:
+            json.dump({"title": "x"}, file)
+        self.assertIn("a table needs", self.report(*SMALL, "--tables", self.path("table.json"), status=1).stderr)
+
+    def test_without_gnuplot(self):
+        """A folder of links to everything but gnuplot would be long: an empty PATH does."""
+        result = self.report(*SMALL, env={**os.environ, "PATH": self.path("empty")})
+        self.assertIn("gnuplot-nox", result.stderr)
+        _, rows, page = self.load()
+        self.assertEqual(len(rows), 3)
+        self.assertIn("gnuplot is not installed", page.text)
+
+    def test_plots(self):
+        if not shutil.which("gnuplot"):
+            self.skipTest("gnuplot is not installed")
+        self.report(*SMALL)
+        for name in ["overall", "speed", "error-0-n2-96x54", "time-0-n2-96x54"]:
+            with open(self.path(f"out/plots/{name}.svg")) as file:
+                svg = file.read()
+            self.assertIn("</svg>", svg)
+            self.assertIn("grid", svg)
+
+    def test_wrong_arguments(self):
+        for arguments, words in [
+            (["--scenes", "nowhere"], "there is no scene nowhere"),
+            (["--methods", "girl"], "girl"),
+            (["--sizes", "640"], "--sizes: 640"),
+            (["--sizes", "640x0"], "--sizes: 640x0"),
+            (["--n", "1"], "--n: 1"),
+            (["--settings", "cell"], "name=value"),
+            (["--settings", "cell=3"], "cell: 3 is below 4"),
+            (["--settings", "sell=4"], "did you mean cell?"),
+            (["--fail-under", "psnr"], "--fail-under is psnr"),
+            (["--fail-under", "prettiness=3"], "perceived_error"),
+            (["--fail-worse", "1"], "goes with --baseline"),
+            (["--scenes", "none"], "nothing to report on"),
+            (["--antialias", "9"], "--antialias is 9"),
+        ]:
+            self.assertIn(words, self.report(*arguments, status=2).stderr, arguments)
+        blocked = self.path("file")
+        with open(blocked, "w"):
+            pass
+        self.assertIn("file", self.must("report", *SMALL, "--out", blocked + "/x", status=1).stderr)
+
+
+if __name__ == "__main__":
+    common.main()
