@@ -85,7 +85,7 @@ static int explain_chip(const char *name, int code, struct error *error)
 			 *name ? name : "/dev/gpiochip0");
 	if (access(path, F_OK) == 0 && access(path, R_OK | W_OK) < 0 && errno == EACCES)
 		return chip_explain_open(path, EACCES, error);
-	if (code != ENOENT && code != ENODEV && code != ENOTTY && code != EINVAL)
+	if (code != 0 && code != ENOENT && code != ENODEV && code != ENOTTY && code != EINVAL)
 		return chip_explain_open(*name ? name : "/dev/gpiochip0", code, error);
 	list_chips(list, sizeof(list));
 	if (!*name)

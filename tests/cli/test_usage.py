@@ -5,7 +5,7 @@ import re
 
 import common
 
-VERBS = ["demo", "record", "replay", "report", "import", "export", "status"]
+VERBS = ["demo", "record", "replay", "report", "import", "export", "status", "latency"]
 
 
 class Usage(common.Case):
