@@ -26,6 +26,7 @@ static const struct verb verbs[] = {
 	{"export", verb_export, "write the frames of a recording as images or video"},
 	{"check-stream", verb_check_stream, "find what is wrong with the motion, depth or times of a stream"},
 	{"latency", verb_latency, "print, plot and compare the time points of displayed frames; measure a GPIO line"},
+	{"doctor", verb_doctor, "look at this machine: what works, what does not, what mends it"},
 	{"status", verb_status, "say what a running daemon does"},
 	{NULL, NULL, NULL},
 };

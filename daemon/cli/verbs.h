@@ -10,6 +10,7 @@
 
 int verb_check_stream(int argc, char **argv);
 int verb_demo(int argc, char **argv);
+int verb_doctor(int argc, char **argv);
 int verb_export(int argc, char **argv);
 int verb_import(int argc, char **argv);
 int verb_latency(int argc, char **argv);
