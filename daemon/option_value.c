@@ -158,10 +158,10 @@ static int parse_size(const struct option_row *row, const char *text, uint32_t v
 	return 0;
 }
 
-/* "auto", "egl", "egl-device:INDEX", "osmesa" */
+/* "auto", "egl", "egl-device:INDEX", "osmesa", "cpu" */
 int option_value_context(const char *text, enum engine_context_kind *kind, uint32_t *device, struct error *error)
 {
-	static const char *const names[] = {"auto", "egl", "egl-device:", "osmesa"};
+	static const char *const names[] = {"auto", "egl", "egl-device:", "osmesa", "cpu"};
 	const size_t prefix = strlen(names[ENGINE_CONTEXT_EGL_DEVICE]);
 	*device = 0;
 	if (strncmp(text, names[ENGINE_CONTEXT_EGL_DEVICE], prefix) == 0) {
@@ -173,13 +173,13 @@ int option_value_context(const char *text, enum engine_context_kind *kind, uint3
 		*device = (uint32_t)index;
 		return 0;
 	}
-	for (unsigned i = 0; i < 4; i++) {
+	for (unsigned i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
 		if (i != ENGINE_CONTEXT_EGL_DEVICE && strcmp(text, names[i]) == 0) {
 			*kind = (enum engine_context_kind)i;
 			return 0;
 		}
 	}
-	return error_set(error, -EINVAL, "context: \"%.64s\" is none of auto, egl, egl-device:INDEX, osmesa", text);
+	return error_set(error, -EINVAL, "context: \"%.64s\" is none of auto, egl, egl-device:INDEX, osmesa, cpu", text);
 }
 
 static int parse_text(struct settings *settings, const struct option_row *row, const char *text, struct error *error)

@@ -13,7 +13,7 @@ int option_value_set(struct settings *settings, const struct option_row *row, co
 /* Writes the present value as option_value_set() would take it. Truncates. */
 void option_value_print(const struct settings *settings, const struct option_row *row, char *value, size_t size);
 
-/* "auto", "egl", "egl-device:INDEX", "osmesa". 0 or -EINVAL with a sentence. */
+/* "auto", "egl", "egl-device:INDEX", "osmesa", "cpu". 0 or -EINVAL with a sentence. */
 int option_value_context(const char *text, enum engine_context_kind *kind, uint32_t *device, struct error *error);
 
 #endif

@@ -55,7 +55,7 @@ static const char *const log_choices[] = {"error", "warning", "info", "debug", N
 static const struct option_row rows[] = {
 	TEXT(method, "method", OPTION_ENGINE, "pursuit",
 		 "How displayed frames are made from real ones. An unknown name is answered with the list."),
-	TEXT(context, "context", OPTION_ENGINE, "auto", "Where the engine runs: auto, egl, egl-device:INDEX or osmesa."),
+	TEXT(context, "context", OPTION_ENGINE, "auto", "Where the engine runs: auto, egl, egl-device:INDEX, osmesa or cpu."),
 	FLAG(gles, "gles", OPTION_ENGINE, "no", "Use OpenGL ES 3.1 instead of OpenGL 4.3 core."),
 	CHOICE(motion_model, "motion-model", OPTION_ENGINE, "linear", motion_model_choices,
 		   "How the methods with a grid continue motion: straight on, or with its change since the frame before."),

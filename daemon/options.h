@@ -22,7 +22,7 @@
 struct settings {
 	/* engine */
 	char method[32];
-	char context[32]; /* auto, egl, egl-device:I, osmesa */
+	char context[32]; /* auto, egl, egl-device:I, osmesa, cpu */
 	bool gles;
 	uint32_t motion_model; /* enum engine_motion_model */
 	uint32_t blur;         /* enum engine_blur */

@@ -114,6 +114,7 @@ int engine_begin(struct engine *engine, const struct frame *frame, const struct 
 	result = pass_run(engine, PASS_UPLOAD, error);
 	if (result == 0)
 		result = engine->method->begin(engine, error);
+	engine->executor->ops->release_planes(engine);
 	engine->begun = result == 0;
 	engine->job.frame = NULL;
 	engine->report.total_ms += (double)(now_ns() - began) * 1e-6;

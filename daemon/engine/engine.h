@@ -6,7 +6,7 @@
  * The only header of engine/ that the rest of the daemon includes.
  *
  * One engine lives on one thread at a time, which must be the one that made it
- * (it owns a GL context, which is current on the thread after each call: who
+ * (it may own a GL context, which is current on the thread after each call: who
  * draws there with another context makes that one current again). Nothing in it is irreplaceable: it can be destroyed
  * and made anew at any moment.
  *
@@ -26,10 +26,11 @@
 #include "daemon/frame.h"
 
 enum engine_context_kind {
-	ENGINE_CONTEXT_AUTO = 0, /* EGL device with a GPU, EGL surfaceless, OSMesa: the first that works */
+	ENGINE_CONTEXT_AUTO = 0, /* an EGL device with a GPU, else the CPU */
 	ENGINE_CONTEXT_EGL_SURFACELESS,
 	ENGINE_CONTEXT_EGL_DEVICE,
 	ENGINE_CONTEXT_OSMESA,
+	ENGINE_CONTEXT_CPU, /* without GL */
 };
 
 enum engine_blur {
@@ -54,6 +55,8 @@ struct engine_params {
 	enum engine_context_kind context;
 	uint32_t device;    /* index, for ENGINE_CONTEXT_EGL_DEVICE */
 	bool gles;          /* a GLES 3.1 context instead of GL 4.3 core */
+	uint32_t threads;   /* of the CPU executor, the caller's among them, 1 to 8; 0: one for each CPU we may run on */
+	const char *level;  /* of its kernels, for tests: "plain", "avx2", "avx512"; NULL: the best. All give equal bits */
 	const char *method; /* name; NULL: "pursuit" */
 	enum engine_blur blur;
 	enum engine_motion_model motion_model;
@@ -116,9 +119,9 @@ struct engine_report {
 };
 
 struct engine_info {
-	const char *context;  /* "egl-surfaceless", "egl-device", "osmesa" */
-	const char *renderer; /* GL_RENDERER */
-	const char *version;  /* GL_VERSION */
+	const char *context;  /* "egl-surfaceless", "egl-device", "osmesa", "cpu" */
+	const char *renderer; /* GL_RENDERER; of the CPU: instruction set and threads */
+	const char *version;  /* GL_VERSION; "" */
 	bool software;        /* a CPU renderer */
 };
 

@@ -68,6 +68,8 @@ struct executor_ops {
 	void (*destroy)(struct executor **executor);
 	/* What was ORIGINAL becomes PREVIOUS; ORIGINAL is undefined until the next upload. */
 	void (*keep_original)(struct executor *executor);
+	/* Before engine_begin() returns, whatever it returns: nothing reads the frame's planes any more. */
+	void (*release_planes)(struct engine *engine);
 	/* Everything asked for is on its way, though nobody waits for it. */
 	void (*flush)(struct executor *executor);
 	/* Around each pass; they do not nest. What cannot be known yet comes with collect_times(), or never, with drop. */
@@ -94,5 +96,6 @@ void executor_destroy(struct executor **executor);
 
 /* The kinds, for executor.c only. */
 struct executor *executor_gl_create(const struct engine_params *params, struct error *error);
+struct executor *executor_cpu_create(const struct engine_params *params, struct error *error);
 
 #endif

@@ -40,6 +40,8 @@ int params_resolve(struct engine_params *params, struct error *error)
 		result = check_number("display_width_mm", &params->display_width_mm, 531.0f, 1e-3f, 1e6f, error);
 	if (result == 0)
 		result = check_number("viewing_distance_mm", &params->viewing_distance_mm, 600.0f, 1e-3f, 1e6f, error);
+	if (result == 0 && params->threads > 8)
+		result = error_set(error, -EINVAL, "threads is %u, must be 0 to 8", params->threads);
 	if (result == 0)
 		result = check_choice("blur", (unsigned)params->blur, ENGINE_BLUR_OFF, error);
 	if (result == 0)

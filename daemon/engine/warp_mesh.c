@@ -116,6 +116,7 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float toler
 	if (!reserve(mesh, plan->index_count))
 		return error_set(error, -ENOMEM, "out of memory for %u triangles", plan->index_count / 3);
 	mesh->count = plan->index_count;
+	mesh->tolerance = tolerance > 0.0f ? tolerance : 0.0f;
 	if (tolerance >= 0.0f)
 		mesh->count = merge_triangles(&mesh->merge, plan, tolerance, mesh->triangles);
 	else
@@ -244,4 +245,38 @@ void warp_mesh_finish(struct warp_mesh *mesh)
 	free(mesh->wildness);
 	free(mesh->kinds);
 	*mesh = (struct warp_mesh){0};
+}
+
+/* The larger singular value of the map from source to displaced triangle. */
+static double stretch_of(const struct warp_mesh *mesh, const uint32_t *index, double phase)
+{
+	const struct plan_vertex *v = mesh->plan->vertices;
+	const struct plan_vertex *a = &v[index[0]], *b = &v[index[1]], *c = &v[index[2]];
+	double bx = (double)b->x - (double)a->x, by = (double)b->y - (double)a->y;
+	double cx = (double)c->x - (double)a->x, cy = (double)c->y - (double)a->y;
+	double bu = phase * ((double)b->ux - (double)a->ux), bv = phase * ((double)b->uy - (double)a->uy);
+	double cu = phase * ((double)c->ux - (double)a->ux), cv = phase * ((double)c->uy - (double)a->uy);
+	double scale = 1.0 / (bx * cy - cx * by);
+	double xx = 1.0 + (bu * cy - cu * by) * scale, xy = (cu * bx - bu * cx) * scale;
+	double yx = (bv * cy - cv * by) * scale, yy = 1.0 + (cv * bx - bv * cx) * scale;
+	double first = xx * xx + yx * yx, second = xy * xy + yy * yy, both = xx * xy + yx * yy;
+	double spread = sqrt((first - second) * (first - second) + 4.0 * both * both);
+	return sqrt(0.5 * (first + second + spread));
+}
+
+static double smoothstep(double from, double to, double x)
+{
+	double t = (x - from) / (to - from);
+	t = t > 0.0 ? t < 1.0 ? t : 1.0 : 0.0;
+	return t * t * (3.0 - 2.0 * t);
+}
+
+double warp_mesh_weight(const struct warp_mesh *mesh, const uint32_t *index, float phase)
+{
+	return smoothstep(BLUR_FROM, BLUR_FULL, stretch_of(mesh, index, (double)phase) - 1.0);
+}
+
+double warp_mesh_tear(const struct warp_mesh *mesh, const uint32_t *index, float phase)
+{
+	return smoothstep(TEAR_FROM, TEAR_FULL, stretch_of(mesh, index, (double)phase) - 1.0);
 }

@@ -31,6 +31,7 @@ struct warp_mesh {
 	struct tiles levels; /* and where the pyramid under it is */
 	uint32_t *triangles; /* merged, 3 indices each */
 	uint32_t count;      /* indices of them */
+	float tolerance;     /* pixels that a vertex may be off; 0: none are merged */
 	float *wildness;     /* by triangle: squared norm of the displacement's gradient */
 	uint8_t *kinds;      /* by triangle: what it needs at the phase sorted for */
 	uint32_t *lists;     /* of indices into the plan's vertices: all lists below, one after another */
@@ -70,5 +71,9 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, uint32_t level, struct error
 int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_order, struct error *error);
 
 void warp_mesh_draw(const struct warp_mesh *mesh, struct warp_list list);
+
+/* Of one triangle (3 indices) at a phase: w and t of docs/method.md, 5, both 0 to 1. */
+double warp_mesh_weight(const struct warp_mesh *mesh, const uint32_t *index, float phase);
+double warp_mesh_tear(const struct warp_mesh *mesh, const uint32_t *index, float phase);
 
 #endif

@@ -61,7 +61,7 @@ static void test_refusals(void)
 	expect("refresh", "0", -EINVAL, "refresh: 0 is below 1 Hz");
 	expect("refresh", "120/0", -EINVAL, "refresh: \"120/0\" is not a rate like 120, 119.88 or 120000/1001");
 	expect("refresh", "12a", -EINVAL, "refresh: \"12a\" is not a rate like 120, 119.88 or 120000/1001");
-	expect("context", "glx", -EINVAL, "context: \"glx\" is none of auto, egl, egl-device:INDEX, osmesa");
+	expect("context", "glx", -EINVAL, "context: \"glx\" is none of auto, egl, egl-device:INDEX, osmesa, cpu");
 	expect("context", "egl-device:x", -EINVAL, "context: \"egl-device:x\": the index of the device must be 0 to 255");
 	expect("method", "", -EINVAL, "method: is empty");
 	expect("window-size", "auto", 0, "");

@@ -6,7 +6,7 @@
  * Passes come from a run that waits after each, "total" and "cpu" (the time of all threads together, which a busy
  * machine disturbs less) from one that does not. Medians.
  *
- *   bench-engine [CONTEXT [METHOD [SIZE]]]    CONTEXT: auto, surfaceless, osmesa
+ *   bench-engine [CONTEXT [METHOD [SIZE]]]    CONTEXT: auto, surfaceless, osmesa, cpu
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -138,6 +138,8 @@ int main(int argc, char **argv)
 	struct engine_params params = {.method = argc > 2 ? argv[2] : NULL};
 	if (argc > 1 && strcmp(argv[1], "surfaceless") == 0)
 		params.context = ENGINE_CONTEXT_EGL_SURFACELESS;
+	else if (argc > 1 && strcmp(argv[1], "cpu") == 0)
+		params.context = ENGINE_CONTEXT_CPU;
 	else if (argc > 1 && strcmp(argv[1], "osmesa") == 0)
 		params.context = ENGINE_CONTEXT_OSMESA;
 	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {

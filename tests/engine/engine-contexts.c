@@ -3,7 +3,7 @@
 
 /*
  * What must hold in every kind of context: made and given back over and over, pictures that pass through to the bit,
- * formats, sizes, several engines at once. The argument is the kind: surfaceless, gles, device, osmesa.
+ * formats, sizes, several engines at once. The argument is the kind: surfaceless, gles, device, osmesa, cpu.
  */
 #include "tests/test.h"
 
@@ -261,6 +261,8 @@ int main(int argc, char **argv)
 	const char *kind = argc > 1 ? argv[1] : "surfaceless";
 	if (strcmp(kind, "osmesa") == 0)
 		params.context = ENGINE_CONTEXT_OSMESA;
+	else if (strcmp(kind, "cpu") == 0)
+		params.context = ENGINE_CONTEXT_CPU;
 	else if (strcmp(kind, "device") == 0)
 		params.context = ENGINE_CONTEXT_EGL_DEVICE;
 	else

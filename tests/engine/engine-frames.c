@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* What the methods show: hold, every N, every phase, UI, coverage, determinism, light. */
+/* What the methods show: hold, every N, every phase, UI, coverage, determinism, light. Argument: surfaceless or cpu. */
 #include "tests/test.h"
 
 #include "daemon/engine/engine.h"
@@ -286,9 +286,10 @@ static void test_plan_is_printed(void)
 	picture_finish(&picture);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-	const struct engine_params params = {0};
+	const bool cpu = argc > 1 && strcmp(argv[1], "cpu") == 0;
+	const struct engine_params params = {.context = cpu ? ENGINE_CONTEXT_CPU : ENGINE_CONTEXT_EGL_SURFACELESS};
 	struct error error;
 	engine = engine_create(&params, &error);
 	if (!engine)

@@ -16,6 +16,7 @@ static const struct {
 	{"surfaceless-gles", ENGINE_CONTEXT_EGL_SURFACELESS, true},
 	{"device-gl", ENGINE_CONTEXT_EGL_DEVICE, false},
 	{"osmesa", ENGINE_CONTEXT_OSMESA, false},
+	{"cpu", ENGINE_CONTEXT_CPU, false},
 };
 
 struct engine *engine_context_open(const char *name, const char *method)

@@ -7,7 +7,7 @@
 
 #include "daemon/engine/engine.h"
 
-#define ENGINE_CONTEXT_USAGE "surfaceless-gl | surfaceless-gles | device-gl | osmesa"
+#define ENGINE_CONTEXT_USAGE "surfaceless-gl | surfaceless-gles | device-gl | osmesa | cpu"
 
 /* An engine in the context of that name, told on stdout. Ends the program, 77 if the machine has no such context. */
 struct engine *engine_context_open(const char *name, const char *method);

@@ -4,7 +4,7 @@
 /*
  * The engine's displayed pictures against the reference, in one context:
  *
- *   test-reference-engine surfaceless-gl | surfaceless-gles | device-gl | osmesa
+ *   test-reference-engine surfaceless-gl | surfaceless-gles | device-gl | osmesa | cpu
  *
  * Every pixel must lie in its interval (bounds.h: what may differ and why).
  * Over all cases, where only the last rounding is open, 99.9% of the pixels

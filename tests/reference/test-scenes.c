@@ -149,9 +149,11 @@ static void test_shares(void)
 	}
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
-	struct engine_params params = {.method = "grid"};
+	const bool cpu = argc > 1 && strcmp(argv[1], "cpu") == 0;
+	struct engine_params params = {.method = "grid",
+								   .context = cpu ? ENGINE_CONTEXT_CPU : ENGINE_CONTEXT_EGL_SURFACELESS};
 	struct error error = {""};
 	if (!render_scenes())
 		SKIP("no EGL surfaceless context to render scenes in");

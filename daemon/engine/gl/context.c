@@ -31,31 +31,11 @@ static void describe(struct context *context)
 	context->info.software = is_software(context->info.renderer);
 }
 
-static struct context *create_auto(const struct engine_params *params, struct error *error)
-{
-	struct error gpu, surfaceless, osmesa;
-	struct context *context = context_egl_gpu_create(params->gles, &gpu);
-	if (!context)
-		context = context_egl_surfaceless_create(params->gles, &surfaceless);
-	if (context)
-		return context;
-	if (params->gles)
-		snprintf(osmesa.text, sizeof(osmesa.text), "OSMesa has no OpenGL ES");
-	else
-		context = context_osmesa_create(&osmesa);
-	if (!context)
-		error_set(error, -ENODEV,
-				  "no OpenGL context (GPU: %.120s; surfaceless: %.120s; OSMesa: %.120s); "
-				  "on Debian install libegl1 and libgl1-mesa-dri",
-				  gpu.text, surfaceless.text, osmesa.text);
-	return context;
-}
-
 static struct context *create_kind(const struct engine_params *params, struct error *error)
 {
 	switch (params->context) {
 	case ENGINE_CONTEXT_AUTO:
-		return create_auto(params, error);
+		return context_egl_gpu_create(params->gles, error);
 	case ENGINE_CONTEXT_EGL_SURFACELESS:
 		return context_egl_surfaceless_create(params->gles, error);
 	case ENGINE_CONTEXT_EGL_DEVICE:
@@ -65,8 +45,10 @@ static struct context *create_kind(const struct engine_params *params, struct er
 			return context_osmesa_create(error);
 		error_set(error, -EINVAL, "OSMesa has no OpenGL ES: choose another context");
 		return NULL;
+	case ENGINE_CONTEXT_CPU:
+		break;
 	}
-	error_set(error, -EINVAL, "context is %d, must be 0 to 3", (int)params->context);
+	error_set(error, -EINVAL, "context is %d, must be 0 to 4", (int)params->context);
 	return NULL;
 }
 

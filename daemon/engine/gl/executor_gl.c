@@ -73,6 +73,11 @@ static void keep_original(struct executor *executor)
 	pictures[PICTURE_PREVIOUS] = kept;
 }
 
+/* GL has copied what it was given. */
+static void release_planes(struct engine *engine)
+{
+}
+
 static void flush(struct executor *executor)
 {
 	table(executor)->Flush();
@@ -122,6 +127,7 @@ static const struct executor_ops ops = {
 	.enter = enter,
 	.destroy = destroy,
 	.keep_original = keep_original,
+	.release_planes = release_planes,
 	.flush = flush,
 	.time_begin = time_begin,
 	.time_end = time_end,

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* The executor that needs no GL: what its passes share. */
+#ifndef PURSUIT_ENGINE_CPU_EXECUTOR_CPU_H
+#define PURSUIT_ENGINE_CPU_EXECUTOR_CPU_H
+
+#include "daemon/engine/cpu/bins.h"
+#include "daemon/engine/cpu/canvas.h"
+#include "daemon/engine/cpu/layers.h"
+#include "daemon/engine/cpu/levels.h"
+#include "daemon/engine/cpu/light.h"
+#include "daemon/engine/cpu/pool.h"
+#include "daemon/engine/cpu/weights.h"
+#include "daemon/engine/state.h"
+
+/* Rows of a picture, wherever they lie. */
+struct rows {
+	uint8_t *data;
+	size_t stride;
+};
+
+/* The planes on their way in: a task of the pool that runs while the frame is analysed. */
+struct intake {
+	struct engine *engine;
+	int color, ui;          /* places in the header; ui: -1 if there is none */
+	uint32_t color_items;   /* blocks of rows of colour, before those of the UI */
+	struct bounds *bounds;  /* of each block of rows of the UI */
+	size_t bounds_capacity; /* blocks */
+	bool under_way;
+};
+
+struct executor_cpu {
+	struct executor base;
+	struct pool *pool;
+	const struct cpu_kernels *kernels;
+	char renderer[64];
+	struct engine_pass_report *timed;
+	uint64_t began_ns;
+
+	/* ORIGINAL, REAL and BETWEEN are one canvas, whose blocks with a blur weight change: cpu_picture(). */
+	struct canvas pictures[PICTURE_COUNT];
+	struct canvas levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
+	struct layers layers;
+	struct weights weights;
+	struct light light;
+	struct scene scene;
+	struct scene_scratch *scratch; /* by thread */
+	struct intake intake;
+};
+
+static inline struct executor_cpu *cpu_of(const struct engine *engine)
+{
+	return (struct executor_cpu *)engine->executor;
+}
+
+/* The picture of that name, ready to be read, whatever is still on its way. Of ORIGINAL, REAL and BETWEEN only the one
+ * asked for last is. */
+const struct canvas *cpu_picture(struct engine *engine, enum picture_id id);
+
+/* Where SHOWN is made: in the caller's image if there is one, else in memory of our own. 0 or -ENOMEM. */
+int cpu_shown(struct engine *engine, struct rows *shown, struct error *error);
+
+/* Copies a picture as large as the frame to rows. */
+void cpu_copy(struct executor_cpu *executor, const struct canvas *from, const struct rows *to);
+
+/* Waits until the frame's planes have been taken. */
+void cpu_finish_intake(struct engine *engine);
+
+extern const struct pass cpu_pass_upload, cpu_pass_analyse, cpu_pass_pyramid, cpu_pass_compensate, cpu_pass_put,
+	cpu_pass_warp, cpu_pass_ui, cpu_pass_read;
+
+#endif

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The CPU executor: its threads, every pixel of a displaced grid covered by some triangle however wild the grid, and
+ * equal bits from every instruction set and every number of threads.
+ */
+#include "tests/test.h"
+
+#include <stdatomic.h>
+
+#include "daemon/engine/cpu/executor_cpu.h"
+#include "tests/engine/picture.h"
+
+struct counter {
+	atomic_uint items[1000];
+	atomic_uint threads[POOL_MAX_THREADS];
+};
+
+static void count(void *context, uint32_t item, uint32_t thread)
+{
+	struct counter *counter = context;
+	atomic_fetch_add(&counter->items[item], 1);
+	atomic_fetch_add(&counter->threads[thread], 1);
+}
+
+static void test_pool(void)
+{
+	for (uint32_t threads = 0; threads <= POOL_MAX_THREADS + 1; threads++) {
+		struct pool *pool = pool_create(threads);
+		CHECK(pool_threads(pool) >= 1 && pool_threads(pool) <= POOL_MAX_THREADS);
+		for (uint32_t items = 0; items <= 1000; items += 125) {
+			struct counter counter = {0};
+			long wrong = 0;
+			for (int i = 0; i < 20; i++)
+				pool_run(pool, count, &counter, items);
+			for (uint32_t i = 0; i < 1000; i++)
+				wrong += counter.items[i] != (i < items ? 20 : 0);
+			for (uint32_t i = pool_threads(pool); i < POOL_MAX_THREADS; i++)
+				wrong += counter.threads[i] != 0;
+			CHECK_INT(wrong, 0);
+		}
+		pool_finish(pool);
+		pool_destroy(&pool);
+	}
+}
+
+/* Random motion by patches, as far as `range` pixels; a depth for each pixel. */
+static void scatter(const struct picture *picture, uint32_t seed, float range, uint32_t patch)
+{
+	for (uint32_t y = 0; y < picture->height; y++)
+		for (uint32_t x = 0; x < picture->width; x++) {
+			uint32_t state = seed + x / patch * 7919u + y / patch * 104729u;
+			picture_random(&state);
+			float mx = (float)(picture_random(&state) & 0xffff) / 32768.0f - 1.0f;
+			float my = (float)(picture_random(&state) & 0xffff) / 32768.0f - 1.0f;
+			picture_set_motion(picture, x, y, range * mx, range * my);
+			picture_set_depth(picture, x, y, (float)(picture_random(&state) & 0xff) / 255.0f);
+		}
+}
+
+static struct engine *make(const char *level, uint32_t threads)
+{
+	struct error error;
+	/* So small and far that nothing is too fast to follow. */
+	const struct engine_params params = {.context = ENGINE_CONTEXT_CPU,
+										 .level = level,
+										 .threads = threads,
+										 .display_width_mm = 10.0f,
+										 .viewing_distance_mm = 10000.0f};
+	return engine_create(&params, &error);
+}
+
+static const struct {
+	float range;
+	uint32_t patch;
+	bool depth;
+} wilds[] = {{3.0f, 1, true},     {40.0f, 1, true},     {40.0f, 1, false}, {60.0f, 24, true},
+			 {500.0f, 24, false}, {60000.0f, 24, true}, {1e30f, 3, true},  {0.01f, 1, true},
+			 {9.0f, 64, true},    {30000.0f, 1, false}, {0.4f, 17, false}, {7.25f, 8, true}};
+#define WILDS (sizeof(wilds) / sizeof(wilds[0]))
+
+static void draw_wild(struct picture *picture, size_t i)
+{
+	picture_init(picture, 301 - 13 * (uint32_t)(i % 3), 205, PURSUIT_FORMAT_BGRA8,
+				 PICTURE_MOTION | PICTURE_UI | (wilds[i].depth ? PICTURE_DEPTH : 0u));
+	picture_fill_random(picture, PURSUIT_ROLE_COLOR, 3);
+	scatter(picture, 11 * (uint32_t)i, wilds[i].range, wilds[i].patch);
+	for (uint32_t y = 40; y < 60; y++)
+		memset(picture_row(picture, PURSUIT_ROLE_UI, y), (int)y, 400);
+}
+
+static void check_covered(struct engine *engine, double phase)
+{
+	struct executor_cpu *executor = (struct executor_cpu *)engine->executor;
+	struct error error;
+	struct engine_image image = {NULL, 0};
+	struct engine_request request = {ENGINE_SHOW_IN_BETWEEN, phase};
+	uint64_t uncovered = 0;
+	executor->scene.check = true;
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+	for (uint32_t i = 0; i < pool_threads(executor->pool); i++)
+		uncovered += executor->scratch[i].uncovered;
+	CHECK_INT((long)uncovered, 0);
+}
+
+static void test_covered(void)
+{
+	static const char *const levels[] = {"plain", "avx2", "avx512"};
+	for (size_t k = 0; k < 3; k++) {
+		struct engine *engine = make(levels[k], 2);
+		if (!engine)
+			continue;
+		for (size_t i = 0; i < WILDS; i++) {
+			struct picture picture;
+			struct error error;
+			struct engine_begin_params begin = {.n = 4, .last_phase = -1.0};
+			draw_wild(&picture, i);
+			CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+			for (int step = 0; step <= 8; step++)
+				check_covered(engine, step < 8 ? 0.125 * step : 8.0);
+			picture_finish(&picture);
+		}
+		engine_destroy(&engine);
+	}
+}
+
+/* Everything that the engine shows of a picture, one frame after another. */
+static void show_all(struct engine *engine, const struct picture *picture, uint8_t *out)
+{
+	static const struct engine_request requests[] = {{ENGINE_SHOW_REAL, 0.0},       {ENGINE_SHOW_REAL, 0.3},
+													 {ENGINE_SHOW_IN_BETWEEN, 0.4}, {ENGINE_SHOW_IN_BETWEEN, 0.75},
+													 {ENGINE_SHOW_PLAIN, 0.0},      {ENGINE_SHOW_IN_BETWEEN, -0.6}};
+	struct error error;
+	struct engine_begin_params begin = {.n = 4, .last_phase = -1.0};
+	CHECK_INT(engine_begin(engine, &picture->frame, &begin, &error), 0);
+	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]); i++) {
+		struct engine_image image = {out, 4 * (size_t)picture->width};
+		CHECK_INT(engine_render(engine, &requests[i], &image, &error), 0);
+		out += 4 * (size_t)picture->width * picture->height;
+	}
+}
+
+static void test_equal_bits(void)
+{
+	static const struct {
+		const char *level;
+		uint32_t threads;
+	} others[] = {{"plain", 3}, {"avx2", 1}, {"avx512", 2}, {NULL, 8}};
+	struct engine *plain = make("plain", 1);
+	CHECK(plain != NULL);
+	for (size_t k = 0; k < sizeof(others) / sizeof(others[0]); k++) {
+		struct engine *other = make(others[k].level, others[k].threads);
+		for (size_t i = 0; i < WILDS + 1 && other; i++) {
+			struct picture picture;
+			if (i < WILDS) {
+				draw_wild(&picture, i);
+			} else {
+				picture_init(&picture, 397, 211, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
+				picture_draw_layers(&picture, 0.0);
+			}
+			size_t bytes = 6 * 4 * (size_t)picture.width * picture.height;
+			uint8_t *a = malloc(bytes), *b = malloc(bytes);
+			show_all(plain, &picture, a);
+			show_all(other, &picture, b);
+			CHECK(memcmp(a, b, bytes) == 0);
+			free(a);
+			free(b);
+			picture_finish(&picture);
+		}
+		engine_destroy(&other);
+	}
+	engine_destroy(&plain);
+}
+
+static void test_refuses(void)
+{
+	struct error error = {""};
+	struct engine_params params = {.context = ENGINE_CONTEXT_CPU, .level = "mmx"};
+	CHECK(engine_create(&params, &error) == NULL);
+	CHECK(strstr(error.text, "mmx") != NULL);
+	params = (struct engine_params){.context = ENGINE_CONTEXT_CPU, .threads = 9};
+	CHECK(engine_create(&params, &error) == NULL);
+	CHECK(strstr(error.text, "threads is 9") != NULL);
+}
+
+int main(void)
+{
+	RUN(test_pool);
+	RUN(test_covered);
+	RUN(test_equal_bits);
+	RUN(test_refuses);
+	return test_result();
+}
