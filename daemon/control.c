@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/keys.h"
 #include "daemon/version.h"
 
 #define TIMELINE_ROWS 400u
@@ -238,7 +239,7 @@ char *control_status_text(struct control *control)
 	json_object_set_new(object, "pid", json_integer(getpid()));
 	json_object_set_new(object, "uptime",
 						json_real((double)((clock_now(control->params.clock) - control->start_ns) / 1000000) / 1e3));
-	json_object_set_new(object, "method", json_string(control->params.settings->method));
+	json_object_set_new(object, "method", json_string(info.method));
 	json_object_set_new(object, "refresh", json_real((double)info.grid.numerator / (double)info.grid.denominator));
 	json_object_set_new(object, "refresh_text", json_string(refresh));
 	json_object_set_new(object, "presenter", json_string(info.presenter));
@@ -348,6 +349,31 @@ static void on_record_stop(struct control *control, const struct request *reques
 		reply(control, request, result, "record-stop: no thread to close the file");
 }
 
+/* "key q", "key escape": as if it had been pressed in the window. */
+static void on_key(struct control *control, const struct request *request)
+{
+	const struct presenter_key key = {keys_parse(request->arguments), clock_now(control->params.clock)};
+	if (key.code == 0) {
+		reply(control, request, EINVAL, "key: must be one character, or escape, f1 or close");
+		return;
+	}
+	output_press_key(control->params.output, &key);
+	reply(control, request, 0, "pressed");
+}
+
+static void on_set(struct control *control, const struct request *request)
+{
+	static const char method[] = "method=";
+	struct error error = {""};
+	int result = -EINVAL;
+	if (strncmp(request->arguments, method, strlen(method)) == 0)
+		result = output_set_method(control->params.output, request->arguments + strlen(method), &error);
+	else
+		error_set(&error, result, "set: \"%.64s\" cannot be set while the daemon runs; there is method=NAME",
+				  request->arguments);
+	reply(control, request, result, result < 0 ? error.text : "set");
+}
+
 static void on_ping(struct control *control, const struct request *request)
 {
 	reply(control, request, 0, "pong");
@@ -361,7 +387,7 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 	} requests[] = {
 		{"status", on_status},   {"settings", on_settings}, {"timeline", on_timeline},
 		{"latency", on_latency}, {"record", on_record},     {"record-stop", on_record_stop},
-		{"ping", on_ping},
+		{"ping", on_ping},       {"key", on_key},           {"set", on_set},
 	};
 	struct control *control = data;
 	const size_t length = strcspn(text, " ");
@@ -374,7 +400,9 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 	}
 	char answer[256];
 	snprintf(answer, sizeof(answer),
-			 "\"%.64s\" is no request; there are status, settings, timeline, latency, record, record-stop and ping", text);
+			 "\"%.64s\" is no request; there are status, settings, timeline, latency, record, record-stop, set, key "
+			 "and ping",
+			 text);
 	reply(control, &request, EINVAL, answer);
 	if (fd >= 0)
 		close(fd);

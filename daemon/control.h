@@ -16,6 +16,9 @@
  *                           the frames received from now on
  *   record-stop             ends the recording; answered when it is on disk:
  *                           {frames, dropped, bytes, error}
+ *   set method=NAME         the method from the next real frame on
+ *   key KEY                 as if it had been pressed in the window: one
+ *                           character, or escape, f1, close
  *   ping                    "pong"
  */
 #ifndef PURSUIT_CONTROL_H

@@ -126,6 +126,8 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 	}
 	struct engine_image target = {.data = image->data, .stride = image->stride};
 	result = engine_render(render->engine, &request, &target, &error);
+	if (result == 0)
+		view_draw(render, image);
 	if (result < 0) {
 		presenter->impl->release(presenter, image);
 		if (result == -EIO)

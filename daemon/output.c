@@ -29,13 +29,15 @@ struct output {
 	_Atomic uint64_t beats;
 	pthread_mutex_t lock; /* the mailbox */
 	pthread_cond_t wake;
-	bool stop, woken, streams_changed, presenter_changed;
+	bool stop, woken, streams_changed, presenter_changed, view_changed, method_changed;
 	bool started; /* the thread has said whether it could start */
 	int start_result;
 	struct error start_error;
 	struct stream *streams[OUTPUT_STREAMS]; /* referenced; in the order of opening */
 	uint32_t stream_count;
 	struct presenter *presenter; /* to be used from now on */
+	uint32_t view;
+	char method[32];
 	struct presenter_flip flips[FLIPS];
 	uint32_t flip_count;
 	struct output_event events[OUTPUT_EVENTS]; /* for main */
@@ -49,6 +51,7 @@ struct output {
 	struct recorder *recorder;
 
 	/* the render thread's own */
+	struct settings settings; /* a copy: some change while it runs */
 	struct stats stats;
 	struct render render;
 	struct stream *own[OUTPUT_STREAMS]; /* referenced copy of streams */
@@ -119,7 +122,7 @@ static void on_change(void *data, struct presenter *presenter)
 
 static void on_key(void *data, const struct presenter_key *key)
 {
-	push_event(data, &(struct output_event){.kind = OUTPUT_KEY, .key = *key});
+	output_press_key(data, key);
 }
 
 /* On the presenter's thread. */
@@ -205,6 +208,22 @@ static void change_presenter(struct output *output, struct presenter *presenter)
 		display_let_go(output->display);
 }
 
+/* What main wants to be different. */
+static void read_wishes(struct output *output)
+{
+	char method[sizeof(output->method)];
+	pthread_mutex_lock(&output->lock);
+	const bool new_view = output->view_changed, new_method = output->method_changed;
+	const uint32_t view = output->view;
+	memcpy(method, output->method, sizeof(method));
+	output->view_changed = output->method_changed = false;
+	pthread_mutex_unlock(&output->lock);
+	if (new_view)
+		render_set_view(&output->render, view);
+	if (new_method)
+		render_set_method(&output->render, method);
+}
+
 /* Empties the mailbox. False: stop. */
 static bool read_mailbox(struct output *output)
 {
@@ -225,6 +244,7 @@ static bool read_mailbox(struct output *output)
 	pthread_mutex_unlock(&output->lock);
 
 	handle_flips(output, flips, flip_count);
+	read_wishes(output);
 	if (new_presenter)
 		change_presenter(output, presenter);
 	if (changed)
@@ -238,7 +258,7 @@ static bool read_mailbox(struct output *output)
 static int start(struct output *output)
 {
 	output->render = (struct render){
-		.settings = output->params.settings,
+		.settings = &output->settings,
 		.clock = output->params.clock,
 		.log = output->params.log,
 		.stats = &output->stats,
@@ -321,6 +341,8 @@ static struct output *allocate(const struct output_params *params)
 	if (!output)
 		return NULL;
 	output->params = *params;
+	output->settings = *params->settings;
+	snprintf(output->info.method, sizeof(output->info.method), "%s", params->settings->method);
 	output->event_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
 	pthread_condattr_init(&attributes);
 	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
@@ -445,6 +467,41 @@ void output_wake(struct output *output)
 	pthread_mutex_lock(&output->lock);
 	wake_locked(output);
 	pthread_mutex_unlock(&output->lock);
+}
+
+int output_set_method(struct output *output, const char *name, struct error *error)
+{
+	const struct engine_method_info *method = engine_methods();
+	while (method->name && strcmp(method->name, name) != 0)
+		method++;
+	if (!method->name)
+		return error_set(error, -EINVAL, "method: there is no method \"%.64s\"", name);
+	pthread_mutex_lock(&output->lock);
+	snprintf(output->method, sizeof(output->method), "%s", name);
+	snprintf(output->info.method, sizeof(output->info.method), "%s", name);
+	output->method_changed = true;
+	wake_locked(output);
+	pthread_mutex_unlock(&output->lock);
+	return 0;
+}
+
+void output_toggle_view(struct output *output, uint32_t part)
+{
+	pthread_mutex_lock(&output->lock);
+	output->view ^= part;
+	output->view_changed = true;
+	wake_locked(output);
+	pthread_mutex_unlock(&output->lock);
+}
+
+void output_toggle_fullscreen(struct output *output)
+{
+	display_toggle_fullscreen(output->display);
+}
+
+void output_press_key(struct output *output, const struct presenter_key *key)
+{
+	push_event(output, &(struct output_event){.kind = OUTPUT_KEY, .key = *key});
 }
 
 int output_event_fd(const struct output *output)

@@ -27,6 +27,7 @@
 #include "daemon/present/presenter.h"
 #include "daemon/record/recorder.h"
 #include "daemon/stats.h"
+#include "daemon/view.h"
 
 #define OUTPUT_STREAMS 64u
 #define OUTPUT_EVENTS 64u
@@ -55,6 +56,7 @@ struct output_params {
 };
 
 struct output_info {
+	char method[32];
 	char presenter[32]; /* "none": lost, and no other works */
 	char renderer[128], context[32];
 	bool software;
@@ -84,6 +86,15 @@ void output_wake(struct output *output);
 /* Readable when there are events; the next event, false if there is none. */
 int output_event_fd(const struct output *output);
 bool output_next_event(struct output *output, struct output_event *event);
+
+/* From the next real frame on. -EINVAL with a sentence: there is no such method. */
+int output_set_method(struct output *output, const char *name, struct error *error);
+/* Switches a part of the view (VIEW_...) on or off. */
+void output_toggle_view(struct output *output, uint32_t part);
+void output_toggle_fullscreen(struct output *output);
+
+/* As if this key had been pressed in the presenter's window: an event. */
+void output_press_key(struct output *output, const struct presenter_key *key);
 
 /* Frames taken from now on go to this recorder (NULL: none) too. Gives the one before back. */
 struct recorder *output_set_recorder(struct output *output, struct recorder *recorder);

@@ -13,6 +13,7 @@
 
 #include "daemon/clock.h"
 #include "daemon/control.h"
+#include "daemon/keyboard.h"
 #include "daemon/lab/chip.h"
 #include "daemon/lab/lab.h"
 #include "daemon/log.h"
@@ -40,6 +41,7 @@ struct pursuitd {
 	struct output *output;
 	struct control *control;
 	struct server *server;
+	struct keyboard keyboard;
 	struct watchdog *watchdog;
 	int argc;
 	char **argv;
@@ -254,12 +256,15 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
 		return -1;
-	const struct server_params server_params = {daemon->loop,   &daemon->log,   &daemon->clock, &daemon->settings,
-												daemon->output, control_handle, daemon->control};
+	daemon->keyboard = (struct keyboard){.loop = daemon->loop, .log = &daemon->log, .output = daemon->output};
+	const struct server_params server_params = {daemon->loop,      &daemon->log,   &daemon->clock,
+												&daemon->settings, daemon->output, control_handle,
+												daemon->control,   keyboard_press, &daemon->keyboard};
 	daemon->server = server_create(&server_params, error);
 	if (!daemon->server)
 		return -1;
 	control_set_server(daemon->control, daemon->server);
+	daemon->keyboard.server = daemon->server;
 	if (watchdog_create(&daemon->watchdog, daemon->loop, &daemon->log, daemon->output, error) < 0)
 		return -1;
 	return daemon->settings.seccomp ? seccomp_apply(error) : 0;

@@ -18,6 +18,7 @@
 void render_finish(struct render *render)
 {
 	engine_destroy(&render->engine);
+	view_finish(&render->view);
 	showing_finish(&render->showing);
 }
 
@@ -71,6 +72,28 @@ void render_set_stream(struct render *render, struct stream *stream)
 		return;
 	render->stream = stream;
 	start_pacer(render);
+}
+
+void render_set_view(struct render *render, uint32_t switches)
+{
+	render->redraw |= switches != render->view.switches;
+	render->view.switches = switches;
+}
+
+void render_set_method(struct render *render, const char *name)
+{
+	struct engine_params params;
+	struct error error = {""};
+	char message[64];
+	snprintf(render->settings->method, sizeof(render->settings->method), "%s", name);
+	int result = settings_engine_params(render->settings, &params, &error);
+	if (result == 0 && render->engine)
+		result = engine_set_params(render->engine, &params, &error);
+	if (result < 0)
+		log_warning(render->log, "method: %s: %s", name, error.text);
+	snprintf(message, sizeof(message), "method: %s", name);
+	view_say(&render->view, message, clock_now(render->clock));
+	render->redraw = true;
 }
 
 void render_skip_frames(struct render *render, struct stream *stream)
@@ -214,6 +237,21 @@ static void pause_once(struct render *render)
 	}
 }
 
+/* The picture that stays is drawn again, as the view is now; then all sleeps again. */
+static void draw_still_anew(struct render *render, uint64_t now_ns)
+{
+	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + estimate(render, &render->plain_cost));
+	render->redraw = false;
+	if (!render->begun || !render->engine)
+		return;
+	if (vblank > render->next_vblank)
+		render->next_vblank = vblank;
+	render->pause_vblanks = PLAIN_AFTER;
+	render->paused = false;
+	draw_plain(render, render->next_vblank);
+	showing_plan(&render->showing, render->next_vblank++, SHOWING_PAUSE);
+}
+
 /* The stream is gone: the plain picture soon. */
 static uint64_t wind_down(struct render *render, uint64_t now_ns)
 {
@@ -307,6 +345,8 @@ uint64_t render_step(struct render *render)
 			return 0;
 		}
 	}
+	if (render->redraw && render->pause_vblanks >= PLAIN_AFTER)
+		draw_still_anew(render, now_ns);
 	if (render->paused)
 		return wake_ns;
 	const bool moves = render->stream && render->begun && render->pacer.has_frame;

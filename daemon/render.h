@@ -25,6 +25,7 @@
 #include "daemon/present/pacer.h"
 #include "daemon/present/presenter.h"
 #include "daemon/showing.h"
+#include "daemon/view.h"
 
 #define RENDER_NEVER UINT64_MAX
 
@@ -37,7 +38,7 @@ struct render_owner {
 };
 
 struct render {
-	const struct settings *settings;
+	struct settings *settings; /* the owner's; only this thread changes them */
 	struct clock *clock;
 	const struct log *log;
 	struct render_owner owner;
@@ -49,6 +50,8 @@ struct render {
 	struct pacer pacer;
 	struct showing showing;
 	struct lab *lab;     /* NULL: none */
+	struct view view;
+	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
 	struct stats *stats; /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
 
@@ -78,6 +81,10 @@ void render_finish(struct render *render);
  * REPLACED until there is one again.
  */
 void render_set_presenter(struct render *render, struct presenter *presenter);
+/* What is drawn over the pictures, VIEW_... or-ed. */
+void render_set_view(struct render *render, uint32_t switches);
+/* The next real frames are made by this method; `name` is one of engine_methods(). */
+void render_set_method(struct render *render, const char *name);
 /* Takes over the presenter's grid as it is now. Has it changed? */
 bool render_follow_grid(struct render *render);
 

@@ -173,6 +173,10 @@ static void on_output_event(void *data, uint32_t events)
 	struct output_event event;
 	(void)events;
 	while (output_next_event(server->params.output, &event)) {
+		if (event.kind == OUTPUT_KEY) {
+			server->params.key(server->params.key_data, &event.key);
+			continue;
+		}
 		struct client *client = find_client(server, event.client_id);
 		struct client_stream *stream = client ? client_find_stream(client, event.stream_id) : NULL;
 		if (!stream)
@@ -247,6 +251,15 @@ const char *server_path(const struct server *server)
 uint32_t server_client_count(const struct server *server)
 {
 	return server->client_count;
+}
+
+/* ---- keys ---- */
+
+bool server_send_key(struct server *server, const struct presenter_key *key)
+{
+	(void)server;
+	(void)key;
+	return false;
 }
 
 /* ---- control ---- */

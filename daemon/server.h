@@ -36,6 +36,9 @@ struct server_params {
 	 */
 	void (*control)(void *data, uint64_t client_id, uint32_t serial, const char *text, int fd);
 	void *data;
+	/* A key was pressed in the presenter's window. */
+	void (*key)(void *key_data, const struct presenter_key *key);
+	void *key_data;
 };
 
 /* Listens. NULL with a sentence. */
@@ -47,6 +50,9 @@ const char *server_path(const struct server *server);
 
 /* Answers a CONTROL request; a client that is gone meanwhile is no error. Cut to what fits a packet. */
 void server_reply(struct server *server, uint64_t client_id, uint32_t serial, int status, const char *text);
+
+/* Tells the client that is shown of a key. False: it does not want to know, or there is none. */
+bool server_send_key(struct server *server, const struct presenter_key *key);
 
 /* One object per stream; the one that was opened last is shown. */
 json_t *server_streams_json(const struct server *server);

@@ -9,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/letters.h"
 #include "daemon/record/image.h"
-#include "letters.h"
 
 #define COLUMNS 4u
 #define MAX_ROWS 12u

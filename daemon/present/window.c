@@ -5,6 +5,9 @@
 
 #include <errno.h>
 #include <math.h>
+#include <poll.h>
+#include <pthread.h>
+#include <setjmp.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,6 +25,9 @@ GLFWAPI XID glfwGetGLXWindow(GLFWwindow *window);
 
 /* Events may have been read from the connection by the drawing thread; then no descriptor tells of them. */
 #define POLL_NS 10000000l
+/* What the server must be asked for (is it mapped? where is it?) is asked for once in so many times, or after an event.
+ */
+#define POLLS_A_LOOK 10u
 #define DEFAULT_WIDTH 1280
 #define DEFAULT_HEIGHT 720
 
@@ -38,8 +44,14 @@ struct window {
 	int x, y, width, height; /* of the window, for the way back from full screen */
 	struct window_state state;
 	GLFWmonitor *seen_monitor;
-	bool seen_full;
+	bool seen_full, touched;
+	uint32_t polls;
 	atomic_bool lost;
+	pthread_t main;
+	bool can_leave; /* main is inside window_process_events() */
+	jmp_buf leave;
+	uint32_t wished_width, wished_height; /* window_fit(); 0: none */
+	bool toggle_wished;
 };
 
 static const char *glfw_sentence(void)
@@ -172,10 +184,8 @@ static void follow_monitors(struct window *window)
 		enter_fullscreen(window, wished);
 }
 
-void window_toggle_fullscreen(struct window *window)
+static void toggle_fullscreen(struct window *window)
 {
-	if (atomic_load(&window->lost))
-		return;
 	GLFWmonitor *monitor = *window->monitor ? find_monitor(window->monitor) : monitor_under(window->glfw);
 	window->fullscreen = !window->fullscreen;
 	if (!window->fullscreen)
@@ -222,12 +232,41 @@ static void on_refresh(GLFWwindow *glfw)
 	look(window_of(glfw), true);
 }
 
+static void on_moved(GLFWwindow *glfw, int x, int y)
+{
+	(void)x;
+	(void)y;
+	window_of(glfw)->touched = true;
+}
+
+static void on_iconified(GLFWwindow *glfw, int iconified)
+{
+	(void)iconified;
+	window_of(glfw)->touched = true;
+}
+
+/* Instead of the one that ends the process; on_display_error() follows. */
+static int on_io_error(Display *display)
+{
+	(void)display;
+	return 0;
+}
+
+/*
+ * Whoever goes on after this waits in Xlib for ever, or ends the process: main
+ * leaves its call into GLFW, the drawing thread ends. Nothing of GLFW is called
+ * any more, it and the window are left behind.
+ */
 static void on_display_error(Display *display, void *data)
 {
 	struct window *window = data;
 	(void)display;
 	if (!atomic_exchange(&window->lost, true))
 		window->params.lost(window->params.data, "glfw: the connection to the X server broke");
+	if (!pthread_equal(pthread_self(), window->main))
+		pthread_exit(NULL);
+	if (window->can_leave)
+		longjmp(window->leave, 1);
 }
 
 /* ---- life ---- */
@@ -287,13 +326,26 @@ static int open_window(struct window *window, struct error *error)
 	glfwSetCharCallback(window->glfw, on_character);
 	glfwSetWindowCloseCallback(window->glfw, on_close);
 	glfwSetWindowRefreshCallback(window->glfw, on_refresh);
+	glfwSetFramebufferSizeCallback(window->glfw, on_moved);
+	glfwSetWindowPosCallback(window->glfw, on_moved);
+	glfwSetWindowIconifyCallback(window->glfw, on_iconified);
 	window->glx = glfwGetWindowAttrib(window->glfw, GLFW_CONTEXT_CREATION_API) == GLFW_NATIVE_CONTEXT_API;
 	window->display = glfwGetX11Display();
-	if (window->display)
+	if (window->display) {
+		XSetIOErrorHandler(on_io_error);
 		XSetIOErrorExitHandler(window->display, on_display_error, window);
+	}
 	if (window->fullscreen && monitor)
 		enter_fullscreen(window, monitor);
 	return open_event_fds(window, error);
+}
+
+/* GLFW was left behind by a window whose server went away; only a new process can open another one. */
+static bool connection_is_broken(void)
+{
+	Display *display = glfwGetX11Display();
+	struct pollfd connection = {.fd = display ? ConnectionNumber(display) : -1, .events = POLLIN};
+	return display && poll(&connection, 1, 0) == 1 && (connection.revents & (POLLHUP | POLLERR | POLLNVAL));
 }
 
 struct window *window_create(const struct window_params *params, struct error *error)
@@ -308,7 +360,8 @@ struct window *window_create(const struct window_params *params, struct error *e
 	window->fullscreen = params->options->fullscreen;
 	window->size_is_free = params->options->width == 0;
 	snprintf(window->monitor, sizeof(window->monitor), "%s", params->options->monitor ? params->options->monitor : "");
-	if (!glfwInit()) {
+	window->main = pthread_self();
+	if (!glfwInit() || connection_is_broken()) {
 		error_set(error, -ENODEV, "glfw: no window system: %s; is DISPLAY set?", glfw_sentence());
 		free(window);
 		return NULL;
@@ -320,15 +373,27 @@ struct window *window_create(const struct window_params *params, struct error *e
 	return window;
 }
 
+/* libGLX would tidy up a connection that nobody may touch any more. */
+static void leave_at_once(int status, void *data)
+{
+	(void)data;
+	fflush(NULL);
+	_exit(status);
+}
+
 void window_destroy(struct window **window)
 {
 	struct window *self = *window;
 	*window = NULL;
 	if (!self)
 		return;
-	if (self->glfw)
-		glfwDestroyWindow(self->glfw);
-	glfwTerminate();
+	if (atomic_load(&self->lost)) {
+		on_exit(leave_at_once, NULL);
+	} else {
+		if (self->glfw)
+			glfwDestroyWindow(self->glfw);
+		glfwTerminate();
+	}
 	if (self->event_fd >= 0)
 		close(self->event_fd);
 	if (self->timer_fd >= 0)
@@ -341,6 +406,35 @@ int window_get_event_fd(const struct window *window)
 	return window->event_fd;
 }
 
+static void fit(struct window *window, uint32_t width, uint32_t height)
+{
+	GLFWmonitor *monitor = monitor_under(window->glfw);
+	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
+	if (mode && (width > (uint32_t)mode->width || height > (uint32_t)mode->height))
+		return;
+	window->width = (int)width;
+	window->height = (int)height;
+	if (!glfwGetWindowMonitor(window->glfw))
+		glfwSetWindowSize(window->glfw, (int)width, (int)height);
+}
+
+static void process_events(struct window *window)
+{
+	glfwPollEvents();
+	if (window->wished_width)
+		fit(window, window->wished_width, window->wished_height);
+	if (window->toggle_wished)
+		toggle_fullscreen(window);
+	window->wished_width = 0;
+	window->toggle_wished = false;
+	if (!window->touched && ++window->polls < POLLS_A_LOOK)
+		return;
+	window->touched = false;
+	window->polls = 0;
+	follow_monitors(window);
+	look(window, false);
+}
+
 void window_process_events(struct window *window)
 {
 	uint64_t count;
@@ -349,26 +443,25 @@ void window_process_events(struct window *window)
 	}
 	if (atomic_load(&window->lost))
 		return;
-	glfwPollEvents();
-	if (atomic_load(&window->lost))
-		return;
-	follow_monitors(window);
-	look(window, false);
+	if (setjmp(window->leave) == 0) {
+		window->can_leave = true;
+		process_events(window);
+	}
+	window->can_leave = false;
+}
+
+void window_toggle_fullscreen(struct window *window)
+{
+	window->toggle_wished = !window->toggle_wished;
 }
 
 void window_fit(struct window *window, uint32_t width, uint32_t height)
 {
-	if (!window->size_is_free || atomic_load(&window->lost))
+	if (!window->size_is_free)
 		return;
 	window->size_is_free = false;
-	GLFWmonitor *monitor = monitor_under(window->glfw);
-	const GLFWvidmode *mode = monitor ? glfwGetVideoMode(monitor) : NULL;
-	if (!mode || (width <= (uint32_t)mode->width && height <= (uint32_t)mode->height)) {
-		window->width = (int)width;
-		window->height = (int)height;
-		if (!glfwGetWindowMonitor(window->glfw))
-			glfwSetWindowSize(window->glfw, (int)width, (int)height);
-	}
+	window->wished_width = width;
+	window->wished_height = height;
 }
 
 /* ---- the drawing thread ---- */

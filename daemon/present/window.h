@@ -43,12 +43,13 @@ struct window_params {
 
 /* Shows an empty window. NULL with a sentence. */
 struct window *window_create(const struct window_params *params, struct error *error);
-/* After the drawing thread has let the context go. NULL accepted. */
+/* After the drawing thread has let the context go, or ended because the window was lost. NULL accepted. */
 void window_destroy(struct window **window);
 
 /* Readable when window_process_events() has something to do: events of the display server, else every 10 ms. */
 int window_get_event_fd(const struct window *window);
 void window_process_events(struct window *window);
+/* These two are done with the next events. */
 void window_toggle_fullscreen(struct window *window);
 /* The size of pictures: a window whose size nobody wished for takes it, as far as it fits the monitor. */
 void window_fit(struct window *window, uint32_t width, uint32_t height);

@@ -105,6 +105,15 @@ void output_remove_stream(struct output *output, struct stream *stream)
 	}
 }
 
+int output_set_method(struct output *output, const char *name, struct error *error)
+{
+	return 0;
+}
+
+void output_press_key(struct output *output, const struct presenter_key *key)
+{
+}
+
 void output_wake(struct output *output)
 {
 }

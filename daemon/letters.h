@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* Letters of 5 x 7 pixels for the labels of pictures: ASCII 32 to 126, five columns each, the lowest bit on top. */
-#ifndef PURSUIT_CLI_LETTERS_H
-#define PURSUIT_CLI_LETTERS_H
+/* Letters of 5 x 7 pixels for text on pictures: ASCII 32 to 126, five columns each, the lowest bit on top. */
+#ifndef PURSUIT_LETTERS_H
+#define PURSUIT_LETTERS_H
 
 #include <stdint.h>
 

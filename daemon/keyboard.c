@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/keyboard.h"
+
+#include <string.h>
+
+#include "daemon/keys.h"
+
+static void next_method(struct keyboard *keyboard)
+{
+	const struct engine_method_info *methods = engine_methods();
+	struct output_info info;
+	struct error error;
+	size_t i = 0;
+	output_get_info(keyboard->output, &info);
+	while (methods[i].name && strcmp(methods[i].name, info.method) != 0)
+		i++;
+	const char *next = methods[i].name && methods[i + 1].name ? methods[i + 1].name : methods[0].name;
+	if (output_set_method(keyboard->output, next, &error) < 0)
+		log_warning(keyboard->log, "%s", error.text);
+	else
+		log_info(keyboard->log, "method: %s", next);
+}
+
+/* A client that wants keys is asked first, since it may have something to save. */
+static void quit(struct keyboard *keyboard, const struct presenter_key *key)
+{
+	if (!keyboard->asked_to_quit && keyboard->server && server_send_key(keyboard->server, key)) {
+		keyboard->asked_to_quit = true;
+		return;
+	}
+	log_info(keyboard->log, "quit by key: stopping");
+	loop_quit(keyboard->loop);
+}
+
+void keyboard_press(void *data, const struct presenter_key *key)
+{
+	struct keyboard *keyboard = data;
+	switch (keys_find(key->code)) {
+	case KEY_HELP:
+		output_toggle_view(keyboard->output, VIEW_HELP);
+		break;
+	case KEY_STATISTICS:
+		output_toggle_view(keyboard->output, VIEW_STATISTICS);
+		break;
+	case KEY_SPLIT:
+		output_toggle_view(keyboard->output, VIEW_SPLIT);
+		break;
+	case KEY_FULLSCREEN:
+		output_toggle_fullscreen(keyboard->output);
+		break;
+	case KEY_METHOD:
+		next_method(keyboard);
+		break;
+	case KEY_QUIT:
+		quit(keyboard, key);
+		break;
+	case KEY_NOTHING:
+		if (keyboard->server)
+			server_send_key(keyboard->server, key);
+		break;
+	}
+}

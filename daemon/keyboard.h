@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* What pressed keys do: the daemon's own (keys.h), all others go to the client that is shown. On main. */
+#ifndef PURSUIT_KEYBOARD_H
+#define PURSUIT_KEYBOARD_H
+
+#include "daemon/log.h"
+#include "daemon/loop.h"
+#include "daemon/output.h"
+#include "daemon/server.h"
+
+struct keyboard {
+	struct loop *loop;
+	const struct log *log;
+	struct output *output;
+	struct server *server; /* NULL: none yet */
+	bool asked_to_quit;    /* the client was, and lives on */
+};
+
+/* As server_params.key. */
+void keyboard_press(void *data, const struct presenter_key *key);
+
+#endif

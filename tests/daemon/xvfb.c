@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "tests/daemon/xvfb.h"
+
+#include <X11/Xutil.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "tests/daemon/fixture.h"
+
+bool xvfb_start(struct xvfb *xvfb)
+{
+	int ends[2];
+	char number[16] = "";
+	memset(xvfb, 0, sizeof(*xvfb));
+	if (pipe(ends) < 0)
+		return false;
+	fflush(NULL);
+	xvfb->pid = fork();
+	if (xvfb->pid == 0) {
+		const int null = open("/dev/null", O_RDWR);
+		char fd[16];
+		snprintf(fd, sizeof(fd), "%d", ends[1]);
+		dup2(null, STDOUT_FILENO);
+		dup2(null, STDERR_FILENO);
+		prctl(PR_SET_PDEATHSIG, SIGKILL);
+		execlp("Xvfb", "Xvfb", "-displayfd", fd, "-screen", "0", "800x600x24", "-nolisten", "tcp", (char *)NULL);
+		_exit(127);
+	}
+	close(ends[1]);
+	const ssize_t length = read(ends[0], number, sizeof(number) - 1);
+	close(ends[0]);
+	if (length > 0) {
+		number[strcspn(number, "\n")] = 0;
+		snprintf(xvfb->name, sizeof(xvfb->name), ":%.14s", number);
+		setenv("DISPLAY", xvfb->name, 1);
+		xvfb->display = XOpenDisplay(xvfb->name);
+	}
+	if (!xvfb->display)
+		xvfb_stop(xvfb);
+	return xvfb->display != NULL;
+}
+
+void xvfb_stop(struct xvfb *xvfb)
+{
+	if (xvfb->display)
+		XCloseDisplay(xvfb->display);
+	xvfb->display = NULL;
+	if (xvfb->pid > 0) {
+		kill(xvfb->pid, SIGKILL);
+		waitpid(xvfb->pid, NULL, 0);
+	}
+	xvfb->pid = 0;
+}
+
+static Window find_once(struct xvfb *xvfb, const char *title)
+{
+	Window root, parent, *children = NULL, found = 0;
+	unsigned count = 0;
+	XQueryTree(xvfb->display, DefaultRootWindow(xvfb->display), &root, &parent, &children, &count);
+	for (unsigned i = 0; i < count && !found; i++) {
+		char *name = NULL;
+		if (XFetchName(xvfb->display, children[i], &name) && name && strcmp(name, title) == 0)
+			found = children[i];
+		if (name)
+			XFree(name);
+	}
+	if (children)
+		XFree(children);
+	return found;
+}
+
+Window xvfb_find(struct xvfb *xvfb, const char *title)
+{
+	Window window = 0;
+	for (int i = 0; i < 400 && !window; i++) {
+		window = find_once(xvfb, title);
+		if (!window)
+			sleep_ms(50);
+	}
+	return window;
+}
+
+void xvfb_get_size(struct xvfb *xvfb, Window window, unsigned *width, unsigned *height)
+{
+	XWindowAttributes attributes = {.width = 0};
+	XGetWindowAttributes(xvfb->display, window, &attributes);
+	*width = (unsigned)attributes.width;
+	*height = (unsigned)attributes.height;
+}
+
+static int ignore_error(Display *display, XErrorEvent *event)
+{
+	(void)display;
+	(void)event;
+	return 0;
+}
+
+uint32_t xvfb_pixel(struct xvfb *xvfb, Window window, unsigned x, unsigned y)
+{
+	XErrorHandler before = XSetErrorHandler(ignore_error);
+	XImage *image = XGetImage(xvfb->display, window, (int)x, (int)y, 1, 1, AllPlanes, ZPixmap);
+	const uint32_t pixel = image ? (uint32_t)XGetPixel(image, 0, 0) & 0xffffff : UINT32_MAX;
+	if (image)
+		XDestroyImage(image);
+	XSetErrorHandler(before);
+	return pixel;
+}
+
+void xvfb_press(struct xvfb *xvfb, Window window, const char *key)
+{
+	XKeyEvent event = {
+		.type = KeyPress,
+		.display = xvfb->display,
+		.window = window,
+		.root = DefaultRootWindow(xvfb->display),
+		.same_screen = True,
+		.time = CurrentTime,
+		.keycode = XKeysymToKeycode(xvfb->display, XStringToKeysym(key)),
+	};
+	XSendEvent(xvfb->display, window, True, KeyPressMask, (XEvent *)&event);
+	event.type = KeyRelease;
+	XSendEvent(xvfb->display, window, True, KeyReleaseMask, (XEvent *)&event);
+	XFlush(xvfb->display);
+}

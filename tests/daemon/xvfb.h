@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* An X server of one's own without a display (Xvfb), and what a test does to windows there. */
+#ifndef PURSUIT_TEST_XVFB_H
+#define PURSUIT_TEST_XVFB_H
+
+#include <X11/Xlib.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <sys/types.h>
+
+struct xvfb {
+	pid_t pid;
+	char name[16]; /* as DISPLAY, which is set */
+	Display *display;
+};
+
+/* False: Xvfb is not installed or does not start. */
+bool xvfb_start(struct xvfb *xvfb);
+void xvfb_stop(struct xvfb *xvfb);
+
+/* The window with this title, 0 if there is none after 20 s. */
+Window xvfb_find(struct xvfb *xvfb, const char *title);
+void xvfb_get_size(struct xvfb *xvfb, Window window, unsigned *width, unsigned *height);
+/* 0xrrggbb of a pixel of the window as it is on the screen. */
+uint32_t xvfb_pixel(struct xvfb *xvfb, Window window, unsigned x, unsigned y);
+/* A key pressed and let go: a keysym like "q" or "Escape". */
+void xvfb_press(struct xvfb *xvfb, Window window, const char *key);
+
+#endif
