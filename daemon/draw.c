@@ -266,6 +266,7 @@ static int queue_real(struct render *render, const struct presenter_image *image
 	int result;
 	while ((result = queue(render, image, *vblank, STATS_REAL, decision->phase)) == -ETIME) {
 		late = true;
+		render_follow_grid(render); /* it may have changed without a flip that would have told */
 		showing_plan(&render->showing, *vblank, SHOWING_REAL);
 		pacer_missed(&render->pacer, decision);
 		*vblank = render_first_vblank(render);
@@ -312,6 +313,8 @@ void draw_real(struct render *render, uint64_t now_ns)
 {
 	struct presenter_image image;
 	draw_count_report(render);
+	if (render->paused)
+		render_follow_grid(render);
 	if (!take(render, now_ns)) {
 		render->take_again_ns = grid_time(&render->grid, grid_at_or_after(&render->grid, now_ns + 1));
 		return;

@@ -142,9 +142,11 @@ static void probe(struct glfw *self)
 	order(self, PROBE_SWAPS);
 	const bool back = wait_for_order(self, clock_now(pictures->params.clock) + PROBE_NS, &swap);
 	const double hz = back && swap.interval_ns ? 1e9 / (double)swap.interval_ns : 0.0;
-	/* A rate that no mode has said is believed too, if it is one of displays and not that of an idle CPU. */
-	self->waits_for_display = mode_hz > 0.0 ? hz > 0.6 * mode_hz && hz < 1.5 * mode_hz : false;
-	begin_grid(self, mode_hz);
+	const bool waits = mode_hz > 0.0 && hz > 0.6 * mode_hz && hz < 1.5 * mode_hz;
+	const bool other = waits || self->waits_for_display;
+	self->waits_for_display = waits;
+	if (other)
+		begin_grid(self, mode_hz);
 	set_lead(self, swap.drawing_ns);
 	if (self->waits_for_display)
 		log_info(pictures->params.log, "glfw: swaps wait for the display, at about %.2f Hz; time stamps: %s", hz,
