@@ -8,16 +8,18 @@
 #include <string.h>
 
 #define ALIGNMENT 64u
+/* Bytes behind the last row that kernels may read, though not use. */
+#define READ_BEYOND 256u
 #define PIXELS_OF_ALIGNMENT (ALIGNMENT / 4u)
 
 int canvas_resize(struct canvas *canvas, uint32_t width, uint32_t height, struct error *error)
 {
 	if (canvas->width == width && canvas->height == height)
 		return 0;
-	/* The border on the left takes a whole alignment; kernels may read, but not use, as much on the right. */
+	/* The border on the left takes a whole alignment. */
 	size_t columns = PIXELS_OF_ALIGNMENT + ((size_t)width + CANVAS_BORDER + PIXELS_OF_ALIGNMENT - 1) /
 											   PIXELS_OF_ALIGNMENT * PIXELS_OF_ALIGNMENT;
-	size_t stride = 4 * columns, bytes = stride * ((size_t)height + 2 * CANVAS_BORDER) + ALIGNMENT;
+	size_t stride = 4 * columns, bytes = stride * ((size_t)height + 2 * CANVAS_BORDER) + ALIGNMENT + READ_BEYOND;
 	bytes = (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 	if (bytes > canvas->capacity) {
 		canvas_finish(canvas);
