@@ -9,6 +9,8 @@
 
 #define MS UINT64_C(1000000)
 #define MARGIN_STEP UINT64_C(500000)
+/* A real frame that is shown for longer than this may stand in a pause. */
+#define GOVERNED_VBLANKS 8u
 #define ENGINE_FIRST_DELAY (100 * MS)
 #define ENGINE_LAST_DELAY (5000 * MS)
 
@@ -74,6 +76,7 @@ int draw_make_engine(struct render *render, struct error *error)
 	const int result = settings_engine_params(render->settings, &params, error);
 	if (result < 0)
 		return result;
+	governor_apply(render->governor.level, &params);
 	render->engine = engine_create(&params, error);
 	if (!render->engine)
 		return -EIO;
@@ -136,6 +139,13 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 			log_warning(render->log, "%s", error.text);
 	}
 	return result;
+}
+
+static void add_cost(struct render *render, struct cost *cost, uint64_t start_ns)
+{
+	const uint64_t run_ns = clock_now(render->clock) - start_ns;
+	cost_add(cost, run_ns);
+	render->work_ns += run_ns;
 }
 
 /* Queues a picture for a vblank; -ETIME if it is over, and the picture is the caller's still. */
@@ -309,6 +319,42 @@ static void settle_real(struct render *render, const struct pacer_decision *deci
 	give_hint(render, decision);
 }
 
+static void set_level(struct render *render, uint32_t before)
+{
+	struct engine_params params;
+	struct error error;
+	if (settings_engine_params(render->settings, &params, &error) < 0)
+		return;
+	governor_apply(render->governor.level, &params);
+	if (engine_set_params(render->engine, &params, &error) < 0)
+		log_warning(render->log, "governor: %s", error.text);
+	render->between_cost = render->plain_cost = (struct cost){.count = 0};
+	log_debug(render->log, "governor: %s, after %s at a load of %.2f", governor_level_name(render->governor.level),
+			  governor_level_name(before), render->governor.load);
+}
+
+/* What the frame before took settles the level of the one that will be shown first at `vblank`. */
+static void govern(struct render *render, uint64_t now_ns, uint64_t vblank)
+{
+	const uint64_t vblanks = vblank - render->real_vblank,
+				   late = render->stats->late_in_betweens - render->late_counted;
+	const struct governor_sample sample = {
+		.now_ns = now_ns,
+		.work_ns = render->work_ns + late * render->between_cost.usual_ns,
+		.time_ns = (uint64_t)((double)vblanks * grid_period_ns(&render->grid)),
+		.late_in_betweens = (uint32_t)late,
+	};
+	const uint32_t before = render->governor.level;
+	render->work_ns = 0;
+	render->late_counted = render->stats->late_in_betweens;
+	/* A pause of the stream teaches nothing; one for want of time does. */
+	const bool paused = render->pause_vblanks > 0 || vblanks > GOVERNED_VBLANKS;
+	const bool busy = sample.work_ns > sample.time_ns / 2;
+	if (render->begun && (busy || !paused) && governor_add(&render->governor, &sample) != before)
+		set_level(render, before);
+	render->stats->governor = render->governor;
+}
+
 void draw_real(struct render *render, uint64_t now_ns)
 {
 	struct presenter_image image;
@@ -326,9 +372,10 @@ void draw_real(struct render *render, uint64_t now_ns)
 	/* Vblanks of a pause that ends now are no misses. */
 	if (render->pause_vblanks > 0)
 		render_plan_pause_until(render, vblank);
+	govern(render, now_ns, vblank);
 	if (!begin(render, &decision) || draw(render, ENGINE_SHOW_REAL, decision.phase, &image) < 0)
 		return;
-	cost_add(&render->real_cost, clock_now(render->clock) - now_ns);
+	add_cost(render, &render->real_cost, now_ns);
 	if (queue_real(render, &image, &decision, &vblank) < 0) {
 		render->presenter->impl->release(render->presenter, &image);
 		return;
@@ -345,7 +392,7 @@ void draw_in_between(struct render *render, const struct pacer_decision *decisio
 	struct presenter_image image;
 	if (draw(render, ENGINE_SHOW_IN_BETWEEN, decision->phase, &image) < 0)
 		return;
-	cost_add(&render->between_cost, clock_now(render->clock) - start_ns);
+	add_cost(render, &render->between_cost, start_ns);
 	if (queue(render, &image, vblank, STATS_IN_BETWEEN, decision->phase) < 0) {
 		render->presenter->impl->release(render->presenter, &image);
 		pacer_missed(&render->pacer, decision);
@@ -361,7 +408,7 @@ void draw_plain(struct render *render, uint64_t vblank)
 	render->standby_done = true;
 	if (draw(render, ENGINE_SHOW_PLAIN, 0.0, &image) < 0)
 		return;
-	cost_add(&render->plain_cost, clock_now(render->clock) - start_ns);
+	add_cost(render, &render->plain_cost, start_ns);
 	if (vblank != 0) {
 		if (queue(render, &image, vblank, STATS_REPEAT, 0.0) < 0)
 			render->presenter->impl->release(render->presenter, &image);

@@ -15,6 +15,7 @@ static const char *const motion_model_choices[] = {"linear", "quadratic", NULL};
 static const char *const blur_choices[] = {"doubtful", "everywhere", "off", NULL};
 static const char *const pattern_choices[] = {"toggle",      "pulse",   "pulse-real", "level-real",
 											  "three-lines", "counter", "sequence",   NULL};
+static const char *const governor_choices[] = {"auto", "off", NULL};
 static const char *const level_choices[] = {"low", "high", NULL};
 static const char *const final_choices[] = {"low", "high", "keep", NULL};
 static const char *const patch_choices[] = {"off", "alternate", "sequence", NULL};
@@ -72,6 +73,11 @@ static const struct option_row rows[] = {
 	REAL(viewing_distance_mm, "viewing-distance-mm", OPTION_ENGINE, "600", 10, 50000, "mm",
 		 "From the eye to the display."),
 	REAL(gamma, "gamma", OPTION_ENGINE, "0", 0, 5, "", "Gamma of the display, 1 to 5; 0 is the sRGB curve."),
+	NUMBER(level, "level", OPTION_ENGINE, "0", 0, 4, "",
+		   "What is left out to save time: 0 nothing, 1 fine cells, 2 blur and boost too, 3 every second in-between, 4 all "
+		   "of them. With the governor the level that it never goes below, else fixed."),
+	CHOICE(governor, "governor", OPTION_OUTPUT, "auto", governor_choices,
+		   "Raise the level when the work for a real frame does not fit into its vblanks, and lower it again."),
 	TEXT(present, "present", OPTION_OUTPUT, "headless",
 		 "Presenters, separated by commas; the first one that works is used: headless, glfw, kms. When a display is "
 		 "lost, the list is tried again."),

@@ -33,7 +33,9 @@ struct settings {
 	double display_width_mm;
 	double viewing_distance_mm;
 	double gamma;               /* 0: sRGB */
+	uint32_t level;             /* of the governor (governor.h): fixed, or the least */
 	/* output */
+	uint32_t governor;          /* 0 auto, 1 off */
 	char present[128];          /* comma-separated list of presenters, tried in turn */
 	uint64_t refresh_numerator; /* --refresh 120, 119.88, 120000/1001 */
 	uint64_t refresh_denominator;

@@ -265,6 +265,8 @@ static int start(struct output *output)
 		.lab = output->params.lab,
 		.owner = {output, record, report, engine_made},
 	};
+	governor_init(&output->render.governor, output->params.settings->governor == 0, output->params.settings->level);
+	output->stats.governor = output->render.governor;
 	struct error error = {""};
 	const int result = draw_make_engine(&output->render, &error);
 	pthread_mutex_lock(&output->lock);

@@ -310,7 +310,7 @@ static uint64_t show_between(struct render *render, uint64_t now_ns, bool urgent
 		render->next_vblank++;
 	} else if (decision.show != PACER_IN_BETWEEN) {
 		pause_once(render);
-	} else if (render->still) {
+	} else if (render->still || !governor_draws(render->governor.level, vblank - render->real_vblank)) {
 		showing_plan(&render->showing, vblank, SHOWING_REPEAT);
 		render->next_vblank++;
 	} else {
@@ -319,6 +319,8 @@ static uint64_t show_between(struct render *render, uint64_t now_ns, bool urgent
 		/* Late beyond doubt: not worth the time that the next one needs. */
 		if (now_ns + render->between_cost.usual_ns + render->lead_ns <= decision.target_ns)
 			draw_in_between(render, &decision, vblank);
+		else
+			cost_add(&render->between_cost, render->between_cost.usual_ns / 8 * 7); /* or it would never be tried again */
 	}
 	return 0;
 }

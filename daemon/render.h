@@ -21,6 +21,7 @@
 
 #include "daemon/cost.h"
 #include "daemon/engine/engine.h"
+#include "daemon/governor.h"
 #include "daemon/output.h"
 #include "daemon/present/pacer.h"
 #include "daemon/present/presenter.h"
@@ -71,6 +72,9 @@ struct render {
 	uint32_t pause_vblanks; /* that nothing was due at, in a row */
 	bool paused;           /* the presenter sleeps */
 	struct cost real_cost, between_cost, plain_cost;
+	struct governor governor;
+	uint64_t work_ns;       /* drawing since the last real frame began */
+	uint64_t late_counted;  /* late in-betweens that the governor knows of */
 	uint64_t margin_ns; /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
 };
 

@@ -120,6 +120,16 @@ static double displayed_hz(const struct stats *stats)
 	return stats->active_ns ? (double)stats->displayed_frames * 1e9 / (double)stats->active_ns : 0.0;
 }
 
+static json_t *governor_json(const struct governor *governor)
+{
+	json_t *frames = json_object();
+	for (uint32_t i = 0; i < GOVERNOR_LEVELS; i++)
+		json_object_set_new(frames, governor_level_name(i), count_json(governor->frames_at[i]));
+	return json_pack("{s:i, s:s, s:f, s:I, s:I, s:o}", "level", (int)governor->level, "name",
+					 governor_level_name(governor->level), "load", rounded(governor->load), "raised",
+					 (json_int_t)governor->raised, "lowered", (json_int_t)governor->lowered, "frames", frames);
+}
+
 json_t *stats_json(const struct stats *stats)
 {
 	const struct {
@@ -156,6 +166,7 @@ json_t *stats_json(const struct stats *stats)
 	json_object_set_new(object, "submit_to_flip_ms", spread_json(&stats->submit_to_flip_ms));
 	json_object_set_new(object, "flip_error_ms", spread_json(&stats->flip_error_ms));
 	json_object_set_new(object, "flip_time_sources", time_sources_json(stats));
+	json_object_set_new(object, "governor", governor_json(&stats->governor));
 	json_object_set_new(object, "passes", names_json(stats->passes, stats->pass_count));
 	json_object_set_new(object, "left_out", names_json(stats->left_out, stats->left_out_count));
 	return object;

@@ -14,6 +14,7 @@
 #include <stdint.h>
 
 #include "daemon/engine/engine.h"
+#include "daemon/governor.h"
 #include "daemon/present/presenter.h"
 
 /*
@@ -74,6 +75,7 @@ struct stats {
 	uint64_t engine_losses;
 	uint64_t unbalanced_vblanks; /* late in-betweens of boosted real frames: light that was missed, not carried */
 	uint64_t flips_by_source[PRESENTER_TIME_SOURCES]; /* where their time stamps are from */
+	struct governor governor; /* as it is now */
 	struct stats_spread engine_ms, submit_to_flip_ms, flip_error_ms;
 	struct stats_name passes[STATS_NAMES], left_out[STATS_NAMES];
 	uint32_t pass_count, left_out_count;

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "daemon/governor.h"
 #include "daemon/present/pacer.h"
 
 /* A real frame counts as there, and a recorded frame as the truth of a vblank, this part of a vblank off. */
@@ -133,10 +134,11 @@ static int show(struct play *play, const struct pacer_decision *decision, uint64
 		if (result < 0)
 			return result;
 	}
+	const uint64_t later = play->schedule->beginnings[play->schedule->beginning_count - 1].showing_count;
 	const struct showing showing = {
 		.number = number,
 		.show = decision->show == PACER_IN_BETWEEN ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL,
-		.repeat = decision->show == PACER_REPEAT && !first,
+		.repeat = !first && (decision->show == PACER_REPEAT || !governor_draws(play->params->level, later)),
 		.phase = decision->phase,
 		.moment_ns = decision->target_ns,
 		.truth = recorded_frames_find(play->frames, decision->target_ns, play->tolerance_ns),

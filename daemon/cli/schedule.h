@@ -76,6 +76,7 @@ struct schedule {
 struct schedule_params {
 	uint32_t every; /* only each such frame is real; 1: all */
 	struct arg_rate refresh;
+	uint32_t level; /* of the governor: which in-betweens the showing before stays for */
 	bool numbered; /* predictions: a recorded frame's number is its id - 1 + number_offset; else its index */
 	uint64_t number_offset;
 };

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "args.h"
+#include "daemon/governor.h"
 #include "daemon/record/image.h"
 #include "daemon/record/pattern.h"
 #include "daemon/record/recording.h"
@@ -24,7 +25,6 @@ struct replay_options {
 	uint32_t every;
 	bool predict;
 	struct arg_rate refresh; /* numerator 0: as the recording asks for */
-	uint32_t level;
 	const char *write_frames, *json, *fail_under, *write_expect, *expect, *expect_tolerance;
 	double least_psnr, least_ssim; /* of --fail-under, -inf: not asked for */
 };
@@ -52,8 +52,6 @@ static bool read_options(struct replay_options *options, int argc, char **argv, 
 		 "each frame with motion predicts the next one (phase 1, no compensation) and is scored against it"},
 		{"refresh", ARG_RATE, &options->refresh, 0, 0, NULL, "HZ",
 		 "of the virtual display; by default 120, or with truth in the recording the rate of its frames"},
-		{"level", ARG_NUMBER, &options->level, 0, 0, NULL, "L",
-		 "of the governor, which is fixed in a replay; 0, everything on, is the only one so far"},
 		{"write-frames", ARG_TEXT, &options->write_frames, 0, 0, NULL, "PATTERN",
 		 "each displayed frame as PNG, such as 'f_%05d.png'; numbered from 0, predictions by the frame they predict"},
 		{"json", ARG_TEXT, &options->json, 0, 0, NULL, "FILE",
@@ -197,6 +195,7 @@ static int make_schedule(struct replay *replay, struct error *error)
 	struct schedule_params params = {
 		.every = replay->options->every ? replay->options->every : 1,
 		.refresh = replay->options->refresh,
+		.level = replay->options->settings.level,
 	};
 	find_numbering(replay, &params);
 	if (replay->options->predict)
@@ -212,6 +211,7 @@ static int start_engines(struct replay *replay, struct error *error)
 	int result = settings_engine_params(&replay->options->settings, &params, error);
 	if (result < 0)
 		return result;
+	governor_apply(replay->options->settings.level, &params);
 	if (replay->options->predict)
 		params.no_compensation = true;
 	replay->engine = engine_create(&params, error);
@@ -284,7 +284,7 @@ static json_t *all_figures(struct replay *replay)
 									: options->every > 1 ? "every"
 														 : "play"));
 	json_object_set_new(json, "every", json_integer(options->every ? options->every : 1));
-	json_object_set_new(json, "level", json_integer(options->level));
+	json_object_set_new(json, "level", json_integer(options->settings.level));
 	json_object_set_new(json, "method", json_string(options->settings.method));
 	json_object_set_new(json, "context", json_string(info->context));
 	json_object_set_new(json, "renderer", json_string(info->renderer));

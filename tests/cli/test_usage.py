@@ -47,7 +47,7 @@ class Usage(common.Case):
             (["replay", "x", "--every", "0"], "a whole number from 1 to 64"),
             (["replay", "x", "--every"], "--every needs a value"),
             (["replay", "x", "--predict=1"], "--predict takes no value"),
-            (["replay", "x", "--level", "3"], "--level is 3"),
+            (["replay", "x", "--level", "5"], "level: 5 is above 4"),
             (["replay", "x", "--every", "2", "--predict"], "use one"),
             (["replay", "x", "--fail-under", "psnr"], "--fail-under is psnr"),
             (["replay", "x", "--write-frames", "f.png"], "--write-frames"),

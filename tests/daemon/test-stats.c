@@ -134,12 +134,14 @@ static void test_json(void)
 	json_t *object = stats_json(&stats);
 	static const char *const names[] = {
 		"real_frames", "in_between_frames", "displayed_frames", "displayed_hz", "late_in_betweens", "lost_real_frames",
-		"engine_ms",   "submit_to_flip_ms", "passes",           "left_out",     "on_time"};
+		"engine_ms",   "submit_to_flip_ms", "passes",           "left_out",     "on_time",
+		"governor",    "vblank_ms"};
 	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
 		CHECK(json_object_get(object, names[i]) != NULL);
 	CHECK_NEAR(json_number_value(json_object_get(object, "displayed_hz")), 116, 0.1);
 	CHECK_NEAR(json_number_value(json_object_get(json_object_get(object, "engine_ms"), "p50")), 2.5, 0.02);
 	CHECK_INT(json_integer_value(json_object_get(json_object_get(object, "passes"), "warp")), 3);
+	CHECK_STRING(json_string_value(json_object_get(json_object_get(object, "governor"), "name")), "full");
 	json_decref(object);
 	object = stats_timeline_json(&stats, 10, 7);
 	CHECK_INT(json_array_size(json_object_get(object, "rows")), 7);
