@@ -27,6 +27,7 @@ static const struct verb verbs[] = {
 	{"check-stream", verb_check_stream, "find what is wrong with the motion, depth or times of a stream"},
 	{"latency", verb_latency, "print, plot and compare the time points of displayed frames; measure a GPIO line"},
 	{"doctor", verb_doctor, "look at this machine: what works, what does not, what mends it"},
+	{"top", verb_top, "show live what a running daemon does"},
 	{"status", verb_status, "say what a running daemon does"},
 	{NULL, NULL, NULL},
 };

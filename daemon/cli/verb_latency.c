@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "args.h"
-#include "control.h"
-#include "daemon/lab/latency_format.h"
+#include "latency_fetch.h"
 #include "latency_report.h"
 #include "loopback.h"
 #include "verbs.h"
@@ -23,63 +22,15 @@ struct choices {
 	unsigned log_count;
 };
 
-/* ---- the running daemon ---- */
-
-/* The daemon's rows have the columns of the CSV form. */
-static bool parse_json_row(const json_t *row, struct points *points)
-{
-	char line[LATENCY_LINE];
-	size_t used = 0;
-	for (size_t i = 0; i < json_array_size(row) && used < sizeof(line); i++) {
-		const json_t *value = json_array_get(row, i);
-		const char *comma = i ? "," : "";
-		if (json_is_string(value))
-			used += (size_t)snprintf(line + used, sizeof(line) - used, "%s%.32s", comma, json_string_value(value));
-		else if (json_is_integer(value))
-			used += (size_t)snprintf(line + used, sizeof(line) - used, "%s%" JSON_INTEGER_FORMAT, comma,
-									 json_integer_value(value));
-		else
-			used += (size_t)snprintf(line + used, sizeof(line) - used, json_is_real(value) ? "%s%.4f" : "%s", comma,
-									 json_real_value(value));
-	}
-	return used < sizeof(line) && latency_parse_row(line, points);
-}
-
-static int add_rows(struct latency_table *table, const json_t *rows, struct error *error)
-{
-	for (size_t i = 0; i < json_array_size(rows); i++) {
-		struct points points;
-		if (!parse_json_row(json_array_get(rows, i), &points))
-			return error_set(error, -EPROTO, "the daemon's latency has a row that is none; is it of another version?");
-		if (latency_table_add(table, &points, error) < 0)
-			return -ENOMEM;
-	}
-	return 0;
-}
-
-/* All that its ring holds: the last half minute at 120 Hz. */
+/* All that the daemon's ring holds. */
 static int fetch(struct latency_report *report, const char *socket, struct error *error)
 {
 	struct control control;
-	uint64_t total = 1;
+	uint64_t from = 0;
 	int result = control_open(&control, socket, error);
 	if (result < 0)
 		return result;
-	for (uint64_t from = 0; from < total && result == 0;) {
-		char request[48];
-		json_t *reply = NULL;
-		snprintf(request, sizeof(request), "latency %" PRIu64, from);
-		result = control_ask(&control, request, -1, &reply, error);
-		if (result < 0)
-			break;
-		const json_t *rows = json_object_get(reply, "rows");
-		if (from == 0)
-			total = (uint64_t)json_integer_value(json_object_get(reply, "total"));
-		from = (uint64_t)json_integer_value(json_object_get(reply, "first")) + json_array_size(rows);
-		total = json_array_size(rows) ? total : 0;
-		result = add_rows(&report->table, rows, error);
-		json_decref(reply);
-	}
+	result = latency_fetch(&control, &from, &report->table, error);
 	control_close(&control);
 	return result;
 }

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""`pursuit latency` on logs that are written here, so what they hold is known."""
+"""`pursuit latency` on logs that are written here, so what they hold is known; `latency` and `top` on a daemon."""
 import json
 import os
+import subprocess
+import time
 import unittest
 import xml.etree.ElementTree
 
-from common import Case
+from common import PURSUIT, Case
 
 COLUMNS = ("vblank,frame_id,show,phase,method,code,level,submit_ns,intake_ns,target_ns,ready_ns,flip_ns,event_ns,"
            "edge_ns,photon_ns,trigger_ns,set_ns,flip_source,late,skipped,edge_lost,photon_lost")
@@ -92,6 +94,42 @@ class Latency(Case):
         self.must("latency", path, path, path, status=2)
         self.must("latency", "--loopback", "1", status=1)
         self.must("latency", "--loopback", "1:2", path, status=2)
+
+
+class Live(Case):
+    def daemon(self, *arguments):
+        """A daemon of our own; its socket's path."""
+        path = self.path("socket")
+        command = [os.path.join(os.path.dirname(PURSUIT), "..", "pursuitd"), "--socket", path, *arguments]
+        running = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(running.stderr.close)
+        self.addCleanup(running.wait)
+        self.addCleanup(running.terminate)
+        deadline = time.monotonic() + 60
+        while not os.path.exists(path):
+            if running.poll() is not None or time.monotonic() > deadline:
+                self.skipTest("the daemon does not start here: " + running.stderr.read())
+            time.sleep(0.02)
+        return path
+
+    def test_without_lab(self):
+        socket = self.daemon()
+        said = self.must("latency", "--socket", socket, status=1).stderr
+        self.assertIn("start pursuitd with --latency", said)
+        top = json.loads(self.must("top", "--json", "--socket", socket, "--interval-ms", "100").stdout)
+        self.assertNotIn("lab", top["status"])
+        self.assertIsNone(top["now"]["displayed_hz"])
+
+    def test_with_lab(self):
+        socket = self.daemon("--latency", "--gpio-line", "17", "--gpio-chip", "no-such-chip")
+        self.assertIn("has no row yet", self.must("latency", "--socket", socket, status=1).stderr)
+        text = self.must("top", "--once", "--socket", socket, "--interval-ms", "100").stdout
+        self.assertIn("no stream", text)
+        self.assertRegex(text, "marker +MISSING: ")
+        self.assertNotIn("\033", text)
+
+    def test_no_daemon(self):
+        self.assertIn("no daemon at", self.must("top", "--socket", self.path("none"), status=1).stderr)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import re
 
 import common
 
-VERBS = ["demo", "record", "replay", "report", "import", "export", "status", "latency"]
+VERBS = ["demo", "record", "replay", "report", "import", "export", "status", "latency", "top"]
 
 
 class Usage(common.Case):

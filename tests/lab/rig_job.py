@@ -16,6 +16,8 @@ RIG_LAB, PRESENTER = sys.argv[1], (sys.argv[3:] or ["headless"])[0]
 SIM = "/sys/kernel/config/gpio-sim/lab"
 TRACE = "/sys/kernel/tracing"
 TMP = os.environ["TMPDIR"]
+# the mode is for kms only
+DISPLAY = ["--present", PRESENTER, "--mode", "1024x768@120"]
 PERIOD_US = 1e6 / 120
 VALUE = re.compile(r"(\d+\.\d+): gpio_value: (\d+) set (\d)")
 VBLANK = re.compile(r"(\d+\.\d+): drm_vblank_event(?:_delivered)?: ")
@@ -99,7 +101,7 @@ def chip_base():
 
 def run(*arguments, flips=240):
     """The lab's status after so many flips."""
-    command = [RIG_LAB, "--flips", str(flips), "--present", PRESENTER, *arguments]
+    command = [RIG_LAB, "--flips", str(flips), *DISPLAY, *arguments]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode:
         print(result.stderr)
@@ -230,8 +232,7 @@ def check_inputs():
 def check_vanish():
     """Unplugged after 1 s, back after 2 s; somebody holds the line first."""
     trace_start()
-    command = [RIG_LAB, "--flips", "600", "--gpio-line", "MARKER", "--photodiode-line", "PHOTODIODE", "--present",
-               PRESENTER]
+    command = [RIG_LAB, "--flips", "600", "--gpio-line", "MARKER", "--photodiode-line", "PHOTODIODE", *DISPLAY]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as lab:
         time.sleep(1.5)
         plug(False)
