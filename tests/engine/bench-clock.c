@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "tests/engine/bench-clock.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+#define WARM_UP 3
+
+static double now_ms(clockid_t clock)
+{
+	struct timespec now;
+	clock_gettime(clock, &now);
+	return (double)now.tv_sec * 1e3 + (double)now.tv_nsec * 1e-6;
+}
+
+static int compare(const void *a, const void *b)
+{
+	double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+static void sort(double values[BENCH_FRAMES])
+{
+	qsort(values, BENCH_FRAMES, sizeof(*values), compare);
+}
+
+static void fail(const struct error *error)
+{
+	fprintf(stderr, "%s\n", error->text);
+	exit(1);
+}
+
+static void show(struct engine *engine, const struct frame *frame, uint32_t n, uint8_t *out)
+{
+	struct error error;
+	const struct engine_begin_params begin = {.n = n, .last_phase = -1.0};
+	if (engine_begin(engine, frame, &begin, &error) < 0)
+		fail(&error);
+	uint32_t width, height;
+	engine_get_size(engine, &width, &height);
+	for (uint32_t i = 0; i < n; i++, out += 4 * (size_t)width * height) {
+		struct engine_image image = {out, 4 * (size_t)width};
+		const struct engine_request request = {i ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, (double)i / n};
+		if (engine_render(engine, &request, &image, &error) < 0)
+			fail(&error);
+	}
+}
+
+/* All planes once, all displayed frames once. */
+static void copy(const struct frame *frame, uint32_t n, size_t picture, uint8_t *in, uint8_t *out)
+{
+	for (uint32_t i = 0; i < frame->header.plane_count; i++)
+		memcpy(in, frame->planes[i], frame->header.planes[i].size);
+	for (uint32_t i = 0; i < n; i++)
+		memcpy(out + i * picture, in, picture);
+}
+
+static size_t largest_plane(const struct frame *frame)
+{
+	size_t largest = 0;
+	for (uint32_t i = 0; i < frame->header.plane_count; i++)
+		if (frame->header.planes[i].size > largest)
+			largest = frame->header.planes[i].size;
+	return largest;
+}
+
+struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n)
+{
+	const size_t picture = 4 * (size_t)frames->header.planes[0].width * frames->header.planes[0].height;
+	uint8_t *in = malloc(largest_plane(frames)), *out = malloc(n * picture);
+	double wall[BENCH_FRAMES], cpu[BENCH_FRAMES], copied[BENCH_FRAMES];
+	memset(in, 0, largest_plane(frames));
+	for (int i = -WARM_UP; i < BENCH_FRAMES; i++) {
+		const struct frame *frame = &frames[(uint32_t)(i + WARM_UP) % count];
+		double began = now_ms(CLOCK_MONOTONIC), cpu_began = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+		show(engine, frame, n, out);
+		double ended = now_ms(CLOCK_MONOTONIC), cpu_ended = now_ms(CLOCK_PROCESS_CPUTIME_ID);
+		copy(frame, n, picture, in, out);
+		if (i < 0)
+			continue;
+		wall[i] = ended - began;
+		cpu[i] = cpu_ended - cpu_began;
+		copied[i] = now_ms(CLOCK_MONOTONIC) - ended;
+	}
+	sort(wall);
+	sort(cpu);
+	sort(copied);
+	free(in);
+	free(out);
+	return (struct bench_times){wall[BENCH_FRAMES / 2], wall[0], cpu[0], copied[BENCH_FRAMES / 2]};
+}
+
+struct engine *bench_engine(const char *context, const char *method)
+{
+	static const char *const names[] = {"auto", "surfaceless", "device", "osmesa", "cpu"};
+	struct engine_params params = {.method = method};
+	struct error error;
+	for (uint32_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+		if (strcmp(names[i], context) == 0)
+			params.context = (enum engine_context_kind)i;
+	struct engine *engine = engine_create(&params, &error);
+	if (!engine)
+		fail(&error);
+	return engine;
+}
+
+double bench_most_memory(void)
+{
+	struct rusage usage;
+	getrusage(RUSAGE_SELF, &usage);
+	return (double)usage.ru_maxrss / 1024.0;
+}
