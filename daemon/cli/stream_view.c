@@ -193,6 +193,7 @@ int stream_view_read(struct stream_view *self, const struct frame *frame)
 		.usable_motion = motion.bytes && !(header->flags & (PURSUIT_FRAME_CUT | PURSUIT_FRAME_MOTION_INVALID)),
 		.has_jitter = header->flags & PURSUIT_FRAME_JITTER,
 		.jitter = {header->jitter_x, header->jitter_y},
+		.frame_id = header->frame_id,
 		.time_ns = header->time_ns,
 		.real_interval_ns = header->real_interval_ns,
 		.motion_interval_ns = header->motion_interval_ns,

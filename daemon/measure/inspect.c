@@ -328,7 +328,8 @@ static void add_times(struct inspect *inspect, const struct inspect_view *previo
 		inspect->times_backwards++;
 		return;
 	}
-	if (!current->real_interval_ns)
+	/* Of frames that were left out between them the interval knows nothing. */
+	if (!current->real_interval_ns || current->frame_id != previous->frame_id + 1)
 		return;
 	double ratio = (double)current->real_interval_ns / (double)(current->time_ns - previous->time_ns);
 	inspect->intervals_known++;

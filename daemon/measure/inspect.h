@@ -36,6 +36,7 @@ struct inspect_view {
 	bool usable_motion; /* neither a cut nor flagged invalid */
 	bool has_jitter;
 	float jitter[2]; /* pixels */
+	uint64_t frame_id; /* counts the client's frames, those that never arrived included */
 	uint64_t time_ns;
 	uint64_t real_interval_ns, motion_interval_ns; /* as declared, 0 unknown */
 	uint64_t invalid_motion;                       /* pixels whose motion is NaN or infinite */

@@ -22,7 +22,7 @@ MAY_INCLUDE = {
     "shaders/": ("shaders/",),
     "client/": ("client/", "proto/"),
     "client/scenes/": ("client/scenes/",),
-    "client/examples/": ("client/pursuit.h",),
+    "client/examples/": ("client/pursuit.h", "client/examples/"),
     "daemon/": ("daemon/", "proto/", "shaders/"),
     "daemon/cli/": ("daemon/", "proto/", "client/pursuit.h", "client/scenes/scene.h"),
     "daemon/engine/": ("daemon/engine/", "daemon/frame.h", "daemon/error.h", "proto/", "shaders/"),
