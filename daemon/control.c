@@ -243,6 +243,7 @@ char *control_status_text(struct control *control)
 	json_object_set_new(object, "refresh", json_real((double)info.grid.numerator / (double)info.grid.denominator));
 	json_object_set_new(object, "refresh_text", json_string(refresh));
 	json_object_set_new(object, "presenter", json_string(info.presenter));
+	json_object_set_new(object, "display", json_string(info.display));
 	json_object_set_new(object, "flip_time_source", json_string(presenter_time_source_name(info.time_source)));
 	json_object_set_new(object, "renderer", json_string(info.renderer));
 	json_object_set_new(object, "context", json_string(info.context));
@@ -363,15 +364,13 @@ static void on_key(struct control *control, const struct request *request)
 
 static void on_set(struct control *control, const struct request *request)
 {
-	static const char method[] = "method=", focus[] = "focus=";
+	static const char method[] = "method=";
 	struct error error = {""};
 	int result = -EINVAL;
-	if (strncmp(request->arguments, focus, strlen(focus)) == 0)
-		result = server_focus(control->server, request->arguments + strlen(focus), &error);
-	else if (strncmp(request->arguments, method, strlen(method)) == 0)
+	if (strncmp(request->arguments, method, strlen(method)) == 0)
 		result = output_set_method(control->params.output, request->arguments + strlen(method), &error);
 	else
-		error_set(&error, result, "set: \"%.64s\" cannot be set while the daemon runs; there are method=NAME and focus=CLIENT",
+		error_set(&error, result, "set: \"%.64s\" cannot be set while the daemon runs; there is method=NAME",
 				  request->arguments);
 	reply(control, request, result, result < 0 ? error.text : "set");
 }

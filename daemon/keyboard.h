@@ -15,7 +15,7 @@ struct keyboard {
 	const struct log *log;
 	struct output *output;
 	struct server *server; /* NULL: none yet */
-	uint64_t asked_client; /* to quit, by a key; 0: none */
+	bool asked_to_quit;    /* the client was, and lives on */
 };
 
 /* As server_params.key. */

@@ -126,7 +126,8 @@ static struct presenter *kms_create(const struct presenter_params *params, struc
 		return NULL;
 	}
 	kms_mode_print(kms_device_get_mode(kms->device), mode, sizeof(mode));
-	log_info(params->log, "kms: %s on %s", mode, kms_device_get_name(kms->device));
+	snprintf(kms->display, sizeof(kms->display), "%s on %s", mode, kms_device_get_name(kms->device));
+	log_info(params->log, "kms: %s", kms->display);
 	return &kms->presenter;
 }
 
@@ -267,6 +268,11 @@ static struct grid kms_get_grid(struct presenter *presenter)
 	return grid;
 }
 
+static const char *kms_get_display(struct presenter *presenter)
+{
+	return self_of(presenter)->display;
+}
+
 static uint64_t kms_get_lead(struct presenter *presenter)
 {
 	struct kms *kms = self_of(presenter);
@@ -283,6 +289,7 @@ const struct presenter_impl presenter_kms = {
 	.destroy = kms_destroy,
 	.get_grid = kms_get_grid,
 	.get_lead = kms_get_lead,
+	.get_display = kms_get_display,
 	.acquire = kms_acquire,
 	.release = kms_release,
 	.present = kms_present,

@@ -40,6 +40,7 @@ struct kms {
 	struct kms_device *device;
 	struct kms_console console;
 	int hotplug, wake;  /* -1: none */
+	char display[256];  /* mode and connector */
 	uint64_t guard_ns;
 	struct kms_buffer backdrop; /* black: before the first picture */
 	pthread_t thread;
@@ -52,13 +53,15 @@ struct kms {
 	uint64_t chosen;           /* the newest vblank that a picture was looked for */
 	bool running, stop, away, lost;
 	struct kms_picture pictures[FLIPS_IMAGES]; /* of an acquired one: the render thread's */
-	uint32_t refused_width, refused_height;    /* said already */
+	uint32_t refused_width, refused_height;    /* the render thread's: said already */
+	struct error loss;                         /* does not change once `lost` is set */
+	uint64_t heard_ns;                         /* of the display */
 
 	/* the event thread's own */
 	struct presenter_flip reports[KMS_REPORTS];
 	uint32_t report_count;
-	uint64_t heard_ns, checked_ns;
-	struct error loss;
+	uint64_t checked_ns;
+	bool told_loss;
 };
 
 /* All with the lock. */
@@ -69,7 +72,7 @@ void kms_choose(struct kms *kms, uint64_t vblank);
 void kms_start(struct kms *kms, uint64_t vblank);
 /* Takes number and phase of vblanks anew from the kernel. Negative errno: it does not know them. */
 int kms_anchor(struct kms *kms);
-/* The display is gone; said once, by the event thread. */
+/* The display is gone; the event thread says so once. */
 void kms_lose(struct kms *kms, const char *why);
 
 /* The event thread; ends when `stop` is set and `wake` written. */

@@ -16,6 +16,8 @@
 #define CHECK_NS SECOND
 /* A display that says nothing for so long is dead. */
 #define SILENCE_NS (2 * SECOND)
+/* So many vblanks after its own a flip will not end any more. */
+#define FLIP_VBLANKS 256u
 
 static uint64_t now_of(const struct kms *kms)
 {
@@ -33,9 +35,9 @@ void kms_lose(struct kms *kms, const char *why)
 	const uint64_t one = 1;
 	if (kms->lost)
 		return;
+	error_set(&kms->loss, -ENODEV, "kms: %s: %s", kms_device_get_name(kms->device), why);
 	kms->lost = true;
 	kms->running = false;
-	error_set(&kms->loss, -ENODEV, "kms: %s: %s", kms_device_get_name(kms->device), why);
 	if (write(kms->wake, &one, sizeof(one)) < 0)
 		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
 }
@@ -191,6 +193,8 @@ static void act_on_time(struct kms *kms)
 		kms_choose(kms, next);
 	if (!kms->away && now_ns > kms->heard_ns + SILENCE_NS)
 		kms_lose(kms, "it sends no vblanks any more");
+	if (kms->scanout.under_way.any && kms->number > kms->scanout.under_way_vblank + FLIP_VBLANKS)
+		kms_lose(kms, "a flip has not ended");
 }
 
 /* When there is something to do even if nobody says anything. */
@@ -226,16 +230,14 @@ static void act(struct kms *kms, const struct pollfd *fds)
 }
 
 /* Gives reports and the loss to the user, without the lock. */
-static void tell(struct kms *kms, bool *told_loss)
+static void tell(struct kms *kms, bool lost)
 {
 	for (uint32_t i = 0; i < kms->report_count; i++)
 		kms->params.flip(kms->params.data, &kms->reports[i]);
 	kms->report_count = 0;
-	if (!*told_loss && kms->loss.text[0]) {
-		*told_loss = true;
-		if (kms->params.lost)
-			kms->params.lost(kms->params.data, kms->loss.text);
-	}
+	if (lost && !kms->told_loss && kms->params.lost)
+		kms->params.lost(kms->params.data, kms->loss.text);
+	kms->told_loss = lost;
 }
 
 /* What it measures is the display, and it runs for microseconds a vblank. Not permitted to most. */
@@ -267,15 +269,17 @@ void *kms_run(void *data)
 							{kms->wake, POLLIN, 0},
 							{kms->hotplug, POLLIN, 0},
 							{kms_console_get_fd(&kms->console), POLLIN, 0}};
-	bool told_loss = false;
 
 	prepare_thread(kms);
 	pthread_mutex_lock(&kms->lock);
 	while (!kms->stop) {
 		const uint64_t now_ns = now_of(kms), then_ns = next_time(kms), span = then_ns > now_ns ? then_ns - now_ns : 0;
 		const struct timespec timeout = {(time_t)(span / SECOND), (long)(span % SECOND)};
+		const bool lost = kms->lost;
+		if (lost)
+			fds[0].fd = -1; /* a controller that is gone would wake us for ever */
 		pthread_mutex_unlock(&kms->lock);
-		tell(kms, &told_loss);
+		tell(kms, lost);
 		if (ppoll(fds, 4, &timeout, NULL) < 0)
 			for (int i = 0; i < 4; i++)
 				fds[i].revents = 0;

@@ -124,6 +124,8 @@ struct presenter_impl {
 	struct grid (*get_grid)(struct presenter *presenter);
 	/* A picture must be queued so long before the time of its vblank; may grow and shrink. Asked with get_grid(). */
 	uint64_t (*get_lead)(struct presenter *presenter);
+	/* Optional: which display in which mode, for a person. Lives as long as the presenter. */
+	const char *(*get_display)(struct presenter *presenter);
 	/* A free picture to draw into; never waits. -EBUSY: all are queued or shown; -ENOMEM. */
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/* Gives a picture back undrawn. */
