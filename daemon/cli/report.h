@@ -89,6 +89,8 @@ bool report_next_item(const char **list, char item[REPORT_NAME]);
 /* Reads the lists of the options into works and variants. STATUS_*. */
 int report_plan(struct report *report);
 int report_start_engines(struct report *report, struct error *error);
+/* Those of --tables. 0 or a negative errno with a sentence. */
+int report_load_tables(struct report *report, struct error *error);
 void report_finish(struct report *report);
 
 /* A new zeroed row; NULL: out of memory. Rows move when one is added. */

@@ -2,7 +2,6 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
@@ -25,7 +24,8 @@ static bool read_options(struct report_options *options, int argc, char **argv, 
 		{"vary", ARG_TEXT, &options->vary, 0, 0, NULL, "LIST",
 		 "methods that are also tried with the settings of --settings; by default grid; all, none"},
 		{"settings", ARG_TEXT, &options->settings_list, 0, 0, NULL, "LIST",
-		 "such as cell=4,blur=off,cell=16+blur=off; by default cell=4,cell=16,blur=off,blur=everywhere"},
+		 "such as cell=4,blur=off,cell=16+blur=off; by default cell=4,cell=16,blur=off,"
+		 "blur=everywhere,motion-model=quadratic"},
 		{"refresh", ARG_RATE, &options->refresh, 0, 0, NULL, "HZ", "of the display; by default 120"},
 		{"antialias", ARG_NUMBER, &options->antialias, 1, 4, NULL, "K",
 		 "K x K samples for each pixel of a scene; by default 2, as games are antialiased; 1: the scenes as they are"},
@@ -33,7 +33,7 @@ static bool read_options(struct report_options *options, int argc, char **argv, 
 		{"out", ARG_TEXT, &options->out, 0, 0, NULL, "DIR",
 		 "for report.json, report.csv, report.html, plots and pictures; by default out-report"},
 		{"tables", ARG_TEXT, &options->tables, 0, 0, NULL, "LIST",
-		 "JSON files of other programs with tables for the page: {\"title\", \"columns\", \"rows\"} or a list of them"},
+		 "JSON files with tables for the page: those of the stability tests (their --json), or {title, columns, rows}"},
 		{"baseline", ARG_TEXT, &options->baseline, 0, 0, NULL, "OLD.json", "print what changed since that report"},
 		{"fail-worse", ARG_REAL, &options->fail_worse, 0, 1000, NULL, "PERCENT",
 		 "with --baseline: exit status 1 if a measure of a row got worse by more than this"},
@@ -74,7 +74,7 @@ static void set_defaults(struct report_options *options)
 	if (!options->vary)
 		options->vary = "grid";
 	if (!options->settings_list)
-		options->settings_list = "cell=4,cell=16,blur=off,blur=everywhere";
+		options->settings_list = "cell=4,cell=16,blur=off,blur=everywhere,motion-model=quadratic";
 	if (!options->refresh.numerator)
 		options->refresh = (struct arg_rate){120, 1};
 	if (!options->antialias)
@@ -93,44 +93,6 @@ static int check_options(const struct report_options *options)
 	if (strlen(options->out) > 3000)
 		return args_wrong(VERB, "--out is too long");
 	return STATUS_DONE;
-}
-
-/* ---- tables of other programs ---- */
-
-static bool is_table(const json_t *table)
-{
-	return json_is_string(json_object_get(table, "title")) && json_is_array(json_object_get(table, "columns")) &&
-		   json_is_array(json_object_get(table, "rows"));
-}
-
-static int load_tables(struct report *report, const char *path, struct error *error)
-{
-	json_error_t why;
-	json_t *file = json_load_file(path, 0, &why);
-	if (!file)
-		return error_set(error, -EINVAL, "%s: %s", path, why.text);
-	bool right = json_is_array(file) || is_table(file);
-	for (size_t i = 0; i < json_array_size(file); i++)
-		right &= is_table(json_array_get(file, i));
-	if (right && json_is_array(file))
-		json_array_extend(report->tables, file);
-	else if (right)
-		json_array_append(report->tables, file);
-	json_decref(file);
-	return right ? 0 : error_set(error, -EINVAL, "%s: a table needs title, columns and rows", path);
-}
-
-static int load_all_tables(struct report *report, struct error *error)
-{
-	int result = 0;
-	char *list = report->options.tables ? strdup(report->options.tables) : NULL, *rest = NULL;
-	report->tables = json_array();
-	if (!report->tables)
-		result = error_set(error, -ENOMEM, "out of memory");
-	for (char *path = list ? strtok_r(list, ",", &rest) : NULL; path && result == 0; path = strtok_r(NULL, ",", &rest))
-		result = load_tables(report, path, error);
-	free(list);
-	return result;
 }
 
 /* ---- the run ---- */
@@ -154,7 +116,7 @@ static int measure(struct report *report, struct error *error)
 {
 	const double start = now_s();
 	struct report_writer *writer = report_writer_create(report->options.out, error);
-	int result = writer ? load_all_tables(report, error) : -EIO;
+	int result = writer ? report_load_tables(report, error) : -EIO;
 	if (result == 0)
 		result = report_start_engines(report, error);
 	if (result == 0)

@@ -174,9 +174,16 @@ class Report(common.Case):
         table = {"title": "Stability & bounds", "columns": ["case", "worst"], "rows": [["a < b", 0.25], ["c", None]]}
         with open(self.path("table.json"), "w") as file:
             json.dump(table, file)
-        self.report(*SMALL, "--tables", self.path("table.json"))
+        suite = {"suite": "motion", "context": "cpu", "cases": [
+            {"case": "flips", "worst": 0.5, "where": "frame 3", "bound": 1.0, "kept": True},
+            {"case": "turns", "worst": 2.0, "where": "frame 9", "bound": 1.0, "kept": False}]}
+        with open(self.path("suite.json"), "w") as file:
+            json.dump(suite, file)
+        self.report(*SMALL, "--tables", self.path("table.json") + "," + self.path("suite.json"))
         report, _, page = self.load()
-        self.assertEqual(report["tables"], [table])
+        self.assertEqual(report["tables"][0], table)
+        self.assertEqual(report["tables"][1]["rows"][1], ["turns", 2.0, 1.0, "BROKEN", "frame 9"])
+        self.assertIn("Stability: motion, cpu", page.text)
         self.assertIn("Stability & bounds", page.text)
         self.assertIn("a < b", page.text)
         with open(self.path("table.json"), "w") as file:
