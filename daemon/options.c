@@ -386,9 +386,25 @@ static void print_wrapped(const char *text, int indent, FILE *out)
 	fputc('\n', out);
 }
 
+/* What a value is called, by type. */
+static const char *const value_names[] = {"TEXT", "", "NUMBER", "NUMBER", "NAME", "RATE", "WxH"};
+
+void settings_print_options(unsigned group_mask, FILE *out)
+{
+	for (const struct option_row *row = rows; row->name; row++) {
+		char range[128];
+		if (!(group_mask & (1u << row->group)))
+			continue;
+		describe_values(row, range, sizeof(range));
+		fprintf(out, "option\t%s%s\t%s\t", row->type == OPTION_FLAG ? "[no-]" : "", row->name, value_names[row->type]);
+		for (size_t i = 0; row->type == OPTION_CHOICE && row->choices[i]; i++)
+			fprintf(out, "%s%s", i ? "," : "", row->choices[i]);
+		fprintf(out, "\t%s\t%s\t%s\n", row->help, range, *row->default_value ? row->default_value : "empty");
+	}
+}
+
 void settings_print_help(unsigned group_mask, FILE *out)
 {
-	static const char *const values[] = {"TEXT", NULL, "NUMBER", "NUMBER", "NAME", "RATE", "WxH"};
 	for (const struct option_row *row = rows; row->name; row++) {
 		char range[128], usage[64];
 		if (!(group_mask & (1u << row->group)))
@@ -397,7 +413,7 @@ void settings_print_help(unsigned group_mask, FILE *out)
 		if (row->type == OPTION_FLAG)
 			snprintf(usage, sizeof(usage), "--[no-]%s", row->name);
 		else
-			snprintf(usage, sizeof(usage), "--%s %s", row->name, values[row->type]);
+			snprintf(usage, sizeof(usage), "--%s %s", row->name, value_names[row->type]);
 		fprintf(out, "  %-30s ", usage);
 		print_wrapped(row->help, 33, out);
 		fprintf(out, "  %-30s (%s; default %s)\n", "", range, *row->default_value ? row->default_value : "empty");

@@ -121,6 +121,13 @@ int settings_argument(struct settings *settings, unsigned group_mask, int argc, 
 void settings_print_help(unsigned group_mask, FILE *out);
 void settings_print_config(FILE *out);
 
+/*
+ * The rows of these groups for programs, from which man pages and shell completions are made: a line each,
+ * "option", name, what the value is called ("" for a flag), choices separated by commas, a sentence, what may be
+ * written, the default; separated by tabs.
+ */
+void settings_print_options(unsigned group_mask, FILE *out);
+
 /* The engine's part, as engine_create() wants it. Points into settings (method). */
 int settings_engine_params(const struct settings *settings, struct engine_params *params, struct error *error);
 

@@ -134,6 +134,10 @@ static int read_arguments(struct settings *settings, int argc, char **argv)
 			settings_print_config(stdout);
 			return 0;
 		}
+		if (strcmp(argv[i], "--print-options") == 0) { /* for the programs that make man page and completions */
+			settings_print_options(ALL_GROUPS, stdout);
+			return 0;
+		}
 		int taken = take_config(settings, argc, argv, &i, &error);
 		if (taken == 0)
 			taken = settings_argument(settings, ALL_GROUPS, argc, argv, &i, &error);

@@ -257,6 +257,32 @@ static void print_help(const struct args *args)
 		printf("\nexamples\n%s", args->examples);
 }
 
+static void print_lines(const char *what, const char *text)
+{
+	while (text && *text) {
+		const int length = (int)strcspn(text, "\n");
+		printf("%s\t%.*s\n", what, length, text);
+		text += length + (text[length] == '\n');
+	}
+}
+
+/* For the programs that make man pages and shell completions: lines of what settings_print_options() says. */
+static void print_options(const struct args *args)
+{
+	print_lines("usage", args->usage);
+	print_lines("summary", args->summary);
+	for (const struct arg_row *row = args->rows; row && row->name; row++) {
+		const char *value = row->type == ARG_FLAG ? "" : row->value ? row->value : "VALUE";
+		printf("option\t%s\t%s\t", row->name, value);
+		for (size_t i = 0; row->type == ARG_CHOICE && row->choices[i]; i++)
+			printf("%s%s", i ? "," : "", row->choices[i]);
+		printf("\t%s\t\t\n", row->help);
+	}
+	if (args->settings && args->groups)
+		settings_print_options(args->groups, stdout);
+	print_lines("example", args->examples);
+}
+
 /* 1 taken, 0 not a row of the verb's own, -1 wrong (said so). */
 static int take_row(const struct args *args, int argc, char **argv, int *index)
 {
@@ -313,6 +339,11 @@ bool args_parse(const struct args *args, int argc, char **argv, int *status)
 	for (int i = 1; i < argc; i++) {
 		if (!only_positionals && (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0)) {
 			print_help(args);
+			*status = STATUS_DONE;
+			return false;
+		}
+		if (!only_positionals && strcmp(argv[i], "--print-options") == 0) {
+			print_options(args);
 			*status = STATUS_DONE;
 			return false;
 		}

@@ -72,6 +72,11 @@ int main(int argc, char **argv)
 		printf("pursuit %d.%d.%d\n", PURSUIT_VERSION_MAJOR, PURSUIT_VERSION_MINOR, PURSUIT_VERSION_PATCH);
 		return STATUS_DONE;
 	}
+	if (strcmp(argv[1], "--print-verbs") == 0) { /* for the programs that make man pages and shell completions */
+		for (const struct verb *verb = verbs; verb->name; verb++)
+			printf("%s\t%s\n", verb->name, verb->help);
+		return STATUS_DONE;
+	}
 	for (const struct verb *verb = verbs; verb->name; verb++) {
 		if (strcmp(verb->name, argv[1]) == 0)
 			return verb->run(argc - 1, argv + 1);
