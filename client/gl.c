@@ -231,6 +231,8 @@ static void copy_facts(struct pursuit_frame *to, const struct pursuit_frame *fro
 	to->flags = from->flags;
 	to->jitter_x = from->jitter_x;
 	to->jitter_y = from->jitter_y;
+	to->damage_count = from->damage_count;
+	memcpy(to->damage, from->damage, sizeof(to->damage));
 	memcpy(to->view_projection, from->view_projection, sizeof(to->view_projection));
 	memcpy(to->previous_view_projection, from->previous_view_projection, sizeof(to->previous_view_projection));
 }

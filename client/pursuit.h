@@ -142,7 +142,16 @@ enum pursuit_frame_flag {
 	PURSUIT_FLAG_CUT = 1,            /* nothing in common with the frame before */
 	PURSUIT_FLAG_MOTION_INVALID = 2, /* ignore the motion plane */
 	PURSUIT_FLAG_MATRICES = 4,       /* the two matrices are set */
-	PURSUIT_FLAG_JITTER = 8          /* jitter_x and jitter_y are set */
+	PURSUIT_FLAG_JITTER = 8,         /* jitter_x and jitter_y are set */
+	PURSUIT_FLAG_DAMAGE = 32         /* damage_count and damage say what changed */
+};
+
+#define PURSUIT_DAMAGE_RECTANGLES 8
+
+/* Pixels of the colour plane, y from the top. */
+struct pursuit_damage {
+	uint32_t x, y;
+	uint32_t width, height; /* 1 or more, within the plane */
 };
 
 /*
@@ -165,6 +174,13 @@ struct pursuit_frame {
 	float jitter_y;              /* pixels, +y down */
 	float view_projection[16];   /* column-major, clip = M x world */
 	float previous_view_projection[16];
+	/*
+	 * With PURSUIT_FLAG_DAMAGE: outside these rectangles all planes are as in the frame submitted before, and nothing
+	 * moves there; a count of 0 says that nothing has changed at all. The planes must hold the whole picture
+	 * nevertheless. Saves the daemon work.
+	 */
+	uint32_t damage_count; /* 0 to PURSUIT_DAMAGE_RECTANGLES */
+	struct pursuit_damage damage[PURSUIT_DAMAGE_RECTANGLES];
 };
 
 enum pursuit_state {

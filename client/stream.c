@@ -22,7 +22,9 @@
 #define VERSION(major, minor, patch) TEXT(major) "." TEXT(minor) "." TEXT(patch)
 
 /* What the shim passes on of enum pursuit_frame_flag; other bits are not the caller's to set. */
-#define CALLER_FLAGS (PURSUIT_FRAME_CUT | PURSUIT_FRAME_MOTION_INVALID | PURSUIT_FRAME_MATRICES | PURSUIT_FRAME_JITTER)
+#define CALLER_FLAGS                                                                                     \
+	(PURSUIT_FRAME_CUT | PURSUIT_FRAME_MOTION_INVALID | PURSUIT_FRAME_MATRICES | PURSUIT_FRAME_JITTER | \
+	 PURSUIT_FRAME_DAMAGE)
 
 struct pursuit_stream {
 	struct shim_layout layout;
@@ -213,6 +215,23 @@ struct shim_ticket shim_stream_ticket(struct pursuit_stream *stream, const struc
 	return ticket;
 }
 
+/* Too many rectangles, or no frame before: everything may have changed. */
+static void set_damage(struct pursuit_frame_header *header, const struct pursuit_frame *frame)
+{
+	if (header->frame_id < 2 || frame->damage_count > PURSUIT_MAX_DAMAGE) {
+		header->flags &= ~PURSUIT_FRAME_DAMAGE;
+	}
+	if (!(header->flags & PURSUIT_FRAME_DAMAGE)) {
+		return;
+	}
+	header->damage_since = header->frame_id - 1;
+	header->damage_count = frame->damage_count;
+	for (uint32_t i = 0; i < frame->damage_count; i++) {
+		header->damage[i] = (struct pursuit_rectangle){frame->damage[i].x, frame->damage[i].y, frame->damage[i].width,
+													   frame->damage[i].height};
+	}
+}
+
 static struct pursuit_frame_header make_header(const struct pursuit_stream *stream, const struct pursuit_frame *frame,
 											   const struct shim_ticket *ticket, uint64_t now_ns)
 {
@@ -233,6 +252,7 @@ static struct pursuit_frame_header make_header(const struct pursuit_stream *stre
 		memcpy(header.previous_view_projection, frame->previous_view_projection,
 			   sizeof(header.previous_view_projection));
 	}
+	set_damage(&header, frame);
 	return header;
 }
 

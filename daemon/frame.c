@@ -251,8 +251,46 @@ static int check_distances(const struct check *check)
 	return 0;
 }
 
+/* Static names, as of planes. */
+static const char *const damage_fields[PURSUIT_MAX_DAMAGE] = {"damage[0]", "damage[1]", "damage[2]", "damage[3]",
+															  "damage[4]", "damage[5]", "damage[6]", "damage[7]"};
+
+/* Whether the rectangles from `first` on are all 0. */
+static bool damage_is_zero(const struct pursuit_frame_header *header, uint32_t first)
+{
+	static const struct pursuit_rectangle zero;
+	for (uint32_t i = first; i < PURSUIT_MAX_DAMAGE; i++)
+		if (memcmp(&header->damage[i], &zero, sizeof(zero)) != 0)
+			return false;
+	return true;
+}
+
+static int check_damage(const struct check *check)
+{
+	const struct pursuit_frame_header *header = check->header;
+	const struct pursuit_plane *color = &header->planes[frame_find_plane(header, PURSUIT_ROLE_COLOR)];
+	const bool set = header->flags & PURSUIT_FRAME_DAMAGE;
+	if (set ? header->damage_since == 0 || header->damage_since >= header->frame_id : header->damage_since != 0)
+		return refuse(check, "damage_since", header->damage_since,
+					  set ? "1 or more and below frame_id" : "0 without the damage flag");
+	if (header->damage_count > (set ? PURSUIT_MAX_DAMAGE : 0))
+		return refuse(check, "damage_count", header->damage_count, set ? "0 to 8" : "0 without the damage flag");
+	for (uint32_t i = 0; i < header->damage_count; i++) {
+		const struct pursuit_rectangle *r = &header->damage[i];
+		if (!r->width || r->x >= color->width || r->width > color->width - r->x)
+			return refuse(check, damage_fields[i], r->width, "of a width of 1 or more within the colour plane");
+		if (!r->height || r->y >= color->height || r->height > color->height - r->y)
+			return refuse(check, damage_fields[i], r->height, "of a height of 1 or more within the colour plane");
+	}
+	if (!damage_is_zero(header, header->damage_count))
+		return refuse(check, "damage", header->damage_count, "0 in the rectangles beyond damage_count");
+	return 0;
+}
+
 static int check_reserved(const struct check *check)
 {
+	if (check->header->reserved0 != 0)
+		return refuse(check, "reserved0", check->header->reserved0, "0");
 	for (size_t i = 0; i < sizeof(check->header->reserved); i++)
 		if (check->header->reserved[i] != 0)
 			return refuse(check, "reserved", check->header->reserved[i], "0 in all bytes");
@@ -300,14 +338,14 @@ int frame_validate(struct pursuit_frame_header *header, uint64_t planes_bytes, c
 				   struct error *error)
 {
 	static int (*const checks[])(const struct check *) = {
-		check_planes, check_ui_size, check_kinds, check_distances, check_reserved,
+		check_planes, check_ui_size, check_kinds, check_distances, check_damage, check_reserved,
 	};
 	const struct check check = {header, planes_bytes, field, value, error};
 
 	if (header->frame_id == 0)
 		return refuse(&check, "frame_id", 0, "1 or more");
 	if (header->flags & ~PURSUIT_FRAME_FLAGS_KNOWN)
-		return refuse(&check, "flags", header->flags, "made of the known flags only (0x1f)");
+		return refuse(&check, "flags", header->flags, "made of the known flags only (0x3f)");
 	for (size_t i = 0; i < sizeof(checks) / sizeof(checks[0]); i++) {
 		int result = checks[i](&check);
 		if (result < 0)

@@ -21,6 +21,8 @@ struct frame {
 	const uint8_t *planes[PURSUIT_MAX_PLANES]; /* first row of planes[i] of the header; borrowed */
 	bool volatile_memory; /* another process may change the planes while they are read */
 	uint64_t intake_ns; /* CLOCK_MONOTONIC, 0 unknown */
+	/* The sequence that it belongs to: damage counts only against a frame of the same one. 0: damage is not used. */
+	uint64_t stream;
 };
 
 /*
@@ -28,7 +30,7 @@ struct frame {
  * role; colour is mandatory), formats that fit their role, sizes, strides,
  * offsets and sizes within `planes_bytes` (no overflow; all planes together at
  * most PURSUIT_MAX_FRAME_BYTES, even where they share bytes), kinds, flags,
- * reserved bytes, finite transfer, near < far. Values that are merely absurd (a
+ * damage within the colour plane, reserved bytes, finite transfer, near < far. Values that are merely absurd (a
  * matrix that is not finite, a jitter beyond the picture, times and intervals
  * that ran backwards and wrapped) are mended to "unknown" in place, and so are
  * the kind of a plane that is not there and the planes beyond plane_count. A

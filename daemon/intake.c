@@ -235,6 +235,7 @@ int stream_take(struct stream *stream, uint64_t now_ns, struct frame *frame, str
 	for (uint32_t i = 0; i < frame->header.plane_count; i++)
 		frame->planes[i] = stream->planes + slot * stream->slot_bytes + frame->header.planes[i].offset;
 	frame->volatile_memory = true;
+	frame->stream = (stream->client_id + 1) << 32 | (uint32_t)stream->stream_id;
 	frame->intake_ns = intake_time(stream, frame->header.submit_ns, now_ns);
 	count_frame(stream, &frame->header);
 	return 1;

@@ -26,7 +26,10 @@ SIZE(struct pursuit_frame_header, 1024, DISK);
 OFFSET(struct pursuit_frame_header, flags, 40, DISK);
 OFFSET(struct pursuit_frame_header, view_projection, 72, DISK);
 OFFSET(struct pursuit_frame_header, planes, 200, DISK);
-OFFSET(struct pursuit_frame_header, reserved, 776, DISK);
+OFFSET(struct pursuit_frame_header, damage_since, 776, DISK);
+SIZE(struct pursuit_rectangle, 16, DISK);
+OFFSET(struct pursuit_frame_header, damage, 792, DISK);
+OFFSET(struct pursuit_frame_header, reserved, 920, DISK);
 
 SIZE(struct pursuit_feedback, 96, SHARED);
 SIZE(struct pursuit_hint, 32, SHARED);

@@ -92,7 +92,8 @@ struct pursuit_plane {
 #define PURSUIT_FRAME_MATRICES (1u << 2)       /* view_projection and previous_ are set */
 #define PURSUIT_FRAME_JITTER (1u << 3)         /* jitter_x, jitter_y are set */
 #define PURSUIT_FRAME_TRUTH_ONLY (1u << 4)     /* recordings: used for scoring, never as a real frame */
-#define PURSUIT_FRAME_FLAGS_KNOWN 0x1fu
+#define PURSUIT_FRAME_DAMAGE (1u << 5)         /* damage_since, damage_count and damage are set */
+#define PURSUIT_FRAME_FLAGS_KNOWN 0x3fu
 
 /* struct pursuit_frame_header.motion_kind */
 #define PURSUIT_MOTION_NONE 0u     /* no motion plane */
@@ -105,12 +106,26 @@ struct pursuit_plane {
 #define PURSUIT_DEPTH_DEVICE_REVERSED 2u /* 1 at near, 0 at far */
 #define PURSUIT_DEPTH_LINEAR 3u          /* distance; near and far give its range */
 
+/* Largest number of rectangles that say what changed. */
+#define PURSUIT_MAX_DAMAGE 8u
+
+/* Pixels of the colour plane. 16 bytes. */
+struct pursuit_rectangle {
+	uint32_t x, y;
+	uint32_t width, height; /* 1 or more, within the plane */
+};
+
 /*
  * The header of one real frame. 1024 bytes.
  *
  * Times are CLOCK_MONOTONIC nanoseconds of the client; 0 means unknown.
  * Motion is in pixels of the colour plane, +x right, +y down, whatever the
  * size of the motion plane. Matrices are column-major, clip = M x world.
+ *
+ * Damage: outside the rectangles all planes are as they were in the frame
+ * `damage_since`, and nothing moves there; without rectangles nothing has
+ * changed at all. The planes hold the whole picture nevertheless: who has not
+ * that frame takes all of them. Without PURSUIT_FRAME_DAMAGE all of it is 0.
  */
 struct pursuit_frame_header {
 	uint64_t frame_id;           /* counted up by the client, never 0 */
@@ -129,7 +144,11 @@ struct pursuit_frame_header {
 	float view_projection[16];
 	float previous_view_projection[16];
 	struct pursuit_plane planes[PURSUIT_MAX_PLANES];
-	uint8_t reserved[248];
+	uint64_t damage_since; /* a frame_id below this one's */
+	uint32_t damage_count; /* rectangles, 0 to PURSUIT_MAX_DAMAGE */
+	uint32_t reserved0;
+	struct pursuit_rectangle damage[PURSUIT_MAX_DAMAGE];
+	uint8_t reserved[104];
 };
 
 /* Bytes of one pixel of a format, 0 for an unknown one. */

@@ -35,6 +35,7 @@ static int apply_params(struct engine *engine, const struct engine_params *param
 		bend_forget(&engine->bend);
 	engine->params = resolved;
 	engine->method = method;
+	engine->stream = 0;
 	return 0;
 }
 
@@ -93,8 +94,10 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 	struct executor *executor = engine->executor;
 	executor->ops->drop_times(executor);
 	report_begin(&engine->report, frame->header.frame_id, executor->ops->time_source(executor));
-	if (engine->method->keeps_previous && engine->begun)
+	if (engine->method->keeps_previous && engine->begun) {
 		executor->ops->keep_original(executor);
+		engine->stream = 0;
+	}
 	engine->job = (struct job){.frame = frame};
 	engine->begun = engine->moves = engine->compensated = false;
 	engine->levels_made = LEVELS_NONE;
@@ -116,6 +119,8 @@ int engine_begin(struct engine *engine, const struct frame *frame, const struct 
 		result = engine->method->begin(engine, error);
 	engine->executor->ops->release_planes(engine);
 	engine->begun = result == 0;
+	if (result < 0)
+		engine->stream = 0;
 	engine->job.frame = NULL;
 	engine->report.total_ms += (double)(now_ns() - began) * 1e-6;
 	return result;
@@ -143,13 +148,22 @@ static int show(struct engine *engine, const struct engine_request *request, str
 	double phase = isnan(request->phase) ? 0.0 : fmin(fmax(request->phase, -1.0), 8.0);
 	enum picture_id picture = PICTURE_ORIGINAL;
 	engine->job.image = image;
+	const uint64_t held = image->holds;
+	image->holds = 0;
 	int result = engine->method->show(engine, request->show, phase, &picture, error);
 	if (result < 0)
 		return result;
 	engine->job.picture = picture;
+	if (picture == PICTURE_ORIGINAL && image->data && held == engine->content) {
+		report_leave_out(&engine->report, "read", "unchanged");
+		image->holds = held;
+		return 0;
+	}
 	result = pass_run(engine, PASS_UI, error);
 	if (result == 0 && image->data)
 		result = pass_run(engine, PASS_READ, error);
+	if (result == 0 && image->data)
+		image->holds = picture == PICTURE_ORIGINAL ? engine->content : 0;
 	else
 		engine->executor->ops->flush(engine->executor);
 	return result;

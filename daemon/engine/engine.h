@@ -86,6 +86,12 @@ struct engine_request {
 struct engine_image {
 	uint8_t *data; /* caller's memory, stride x height bytes; NULL: leave it in the engine's texture */
 	size_t stride; /* bytes, at least 4 x width, a multiple of 4 */
+	/*
+	 * What the memory holds, as engine_render() left it here; 0: unknown, which is always right. If it holds just the
+	 * picture that is asked for nothing is written: keep it with the memory, set it to 0 where something else is
+	 * written.
+	 */
+	uint64_t holds;
 };
 
 struct engine_begin_params {

@@ -23,6 +23,9 @@ extern const struct pass pass_field, pass_paint;
  */
 int planes_prepare(struct engine *engine, int *color, int *ui, struct error *error);
 
+/* Whether rows y to y + count - 1 of the planes may have changed since the frame before. */
+bool planes_changed(const struct engine *engine, uint32_t y, uint32_t count);
+
 /* Notes that something was left out; the first reason given for a name stays. */
 void report_leave_out(struct engine_report *report, const char *name, const char *reason);
 void report_begin(struct engine_report *report, uint64_t frame_id, const char *time_source);

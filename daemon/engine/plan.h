@@ -23,6 +23,7 @@ enum plan_rest {
 	PLAN_MOTION_INVALID,
 	PLAN_NO_MOTION,
 	PLAN_NO_INTERVAL,
+	PLAN_UNCHANGED, /* its client says so; nobody looked */
 };
 
 struct plan_params {
@@ -32,13 +33,14 @@ struct plan_params {
 	float viewing_distance_mm;  /* > 0; 0: 600 */
 	float last_phase;           /* p_last, 0 to 8; clamped, NaN is 0 */
 	uint64_t real_interval_ns;  /* T as the pacer knows it; 0: the frame's own */
+	bool unchanged;             /* nothing has changed since the frame before */
 };
 
 /* 24 bytes: what the GPU gets. */
 struct plan_vertex {
-	float x, y;   /* source position, pixels */
-	float ux, uy; /* displacement over one real interval, pixels */
-	float z;      /* normalised depth, 0 near */
+	float x, y;    /* source position, pixels */
+	float ux, uy;  /* displacement over one real interval, pixels */
+	float z;       /* normalised depth, 0 near */
 	float snapped; /* 1: at a discontinuity, 0: not */
 };
 
@@ -49,17 +51,17 @@ struct plan {
 	uint32_t width, height; /* of colour */
 	uint32_t cell;
 	enum plan_rest rest;
-	double real_interval_s;   /* T, 0 unknown */
+	double real_interval_s; /* T, 0 unknown */
 	float last_phase;
-	uint32_t columns, rows;   /* vertices; 0 if the frame rests */
+	uint32_t columns, rows;       /* vertices; 0 if the frame rests */
 	struct plan_vertex *vertices; /* columns x rows, row by row */
-	uint32_t *indices;        /* triangles, 3 each, in drawing order */
+	uint32_t *indices;            /* triangles, 3 each, in drawing order */
 	uint32_t index_count;
-	uint32_t snapped;         /* vertices */
-	uint32_t folded;          /* triangles that turn over at last_phase */
-	uint32_t doubtful;        /* others with stretch(last_phase) > 1.25, that is with w > 0 */
-	uint64_t invalid_pixels;  /* of the picture: NaN or infinite motion there; 0 without looking if cut and the like */
-	float max_displacement;   /* of any vertex, pixels per real interval */
+	uint32_t snapped;        /* vertices */
+	uint32_t folded;         /* triangles that turn over at last_phase */
+	uint32_t doubtful;       /* others with stretch(last_phase) > 1.25, that is with w > 0 */
+	uint64_t invalid_pixels; /* of the picture: NaN or infinite motion there; 0 without looking if cut and the like */
+	float max_displacement;  /* of any vertex, pixels per real interval */
 	/* owned storage, reused from frame to frame; no allocation in the steady state */
 	uint32_t vertex_capacity, index_capacity;
 	void *scratch;

@@ -4,6 +4,9 @@
 #include "daemon/engine/pass.h"
 
 #include <errno.h>
+#include <string.h>
+
+#include "daemon/engine/now.h"
 
 static int find_plane(const struct pursuit_frame_header *header, uint32_t role)
 {
@@ -26,6 +29,42 @@ static int check_color(const struct engine *engine, const struct pursuit_frame_h
 					 plane->height, most, most);
 }
 
+/* Planes of one kind, wherever their rows lie. */
+static bool same_kind(const struct pursuit_plane *a, const struct pursuit_plane *b)
+{
+	return a->role == b->role && a->format == b->format && a->width == b->width && a->height == b->height &&
+		   memcmp(&a->transfer, &b->transfer, sizeof(a->transfer)) == 0;
+}
+
+/* Finds out whether the frame's damage counts, and remembers what the next one is compared with. */
+static void learn_damage(struct engine *engine, const struct pursuit_plane *color, const struct pursuit_plane *ui)
+{
+	static const struct pursuit_plane none;
+	const struct frame *frame = engine->job.frame;
+	const struct pursuit_frame_header *header = &frame->header;
+	ui = ui ? ui : &none;
+	engine->damage.known = (header->flags & PURSUIT_FRAME_DAMAGE) && frame->stream && frame->stream == engine->stream &&
+						   header->damage_since == engine->frame_id && same_kind(color, &engine->color_plane) &&
+						   same_kind(ui, &engine->ui_plane);
+	engine->damage.count = header->damage_count < PURSUIT_MAX_DAMAGE ? header->damage_count : PURSUIT_MAX_DAMAGE;
+	memcpy(engine->damage.rectangles, header->damage, sizeof(engine->damage.rectangles));
+	engine->stream = frame->stream;
+	engine->frame_id = header->frame_id;
+	engine->color_plane = *color;
+	engine->ui_plane = *ui;
+	if (!engine->damage.known || engine->damage.count)
+		engine->content = now_ns();
+}
+
+bool planes_changed(const struct engine *engine, uint32_t y, uint32_t count)
+{
+	const struct damage *damage = &engine->damage;
+	for (uint32_t i = 0; i < damage->count && damage->known; i++)
+		if (damage->rectangles[i].y < y + count && y < damage->rectangles[i].y + damage->rectangles[i].height)
+			return true;
+	return !damage->known;
+}
+
 int planes_prepare(struct engine *engine, int *color, int *ui, struct error *error)
 {
 	const struct pursuit_frame_header *header = &engine->job.frame->header;
@@ -38,8 +77,10 @@ int planes_prepare(struct engine *engine, int *color, int *ui, struct error *err
 	const struct pursuit_plane *plane = &header->planes[*color];
 	engine->width = plane->width;
 	engine->height = plane->height;
-	engine->ui_bounds = (struct bounds){0};
 	convert_prepare(&engine->color_convert, plane->format, &plane->transfer, params->curve, params->gamma);
+	learn_damage(engine, plane, *ui < 0 ? NULL : &header->planes[*ui]);
+	if (planes_changed(engine, 0, engine->height))
+		engine->ui_bounds = (struct bounds){0};
 	if (*ui < 0)
 		return 0;
 	const struct pursuit_plane *layer = &header->planes[*ui];

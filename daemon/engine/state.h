@@ -27,6 +27,13 @@ struct job {
 	int (*paint)(struct engine *engine, struct error *error);
 };
 
+/* What is known to have changed since the frame begun before. */
+struct damage {
+	bool known; /* else everything may have */
+	uint32_t count;
+	struct pursuit_rectangle rectangles[PURSUIT_MAX_DAMAGE];
+};
+
 struct engine {
 	struct engine_params params; /* all defaults filled in */
 	const struct method *method;
@@ -42,6 +49,10 @@ struct engine {
 
 	/* The frame begun last. */
 	bool begun;
+	uint64_t frame_id, stream;                  /* stream 0: ORIGINAL and UI are not what that frame left there */
+	struct pursuit_plane color_plane, ui_plane; /* as they were taken; role 0: none */
+	struct damage damage;
+	uint64_t content;        /* a number of ORIGINAL with its UI, never used twice */
 	uint32_t width, height;  /* of its colour */
 	struct bounds ui_bounds; /* pixels of the UI that are not wholly transparent */
 	uint32_t n;

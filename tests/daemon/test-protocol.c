@@ -340,7 +340,7 @@ static void spoil_near(struct pursuit_frame_header *h)
 }
 static void spoil_reserved(struct pursuit_frame_header *h)
 {
-	h->reserved[200] = 4;
+	h->reserved[100] = 4;
 }
 
 static uint64_t bits_of(float value)

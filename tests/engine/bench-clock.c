@@ -35,18 +35,15 @@ static void fail(const struct error *error)
 	exit(1);
 }
 
-static void show(struct engine *engine, const struct frame *frame, uint32_t n, uint8_t *out)
+static void show(struct engine *engine, const struct frame *frame, uint32_t n, struct engine_image *images)
 {
 	struct error error;
 	const struct engine_begin_params begin = {.n = n, .last_phase = -1.0};
 	if (engine_begin(engine, frame, &begin, &error) < 0)
 		fail(&error);
-	uint32_t width, height;
-	engine_get_size(engine, &width, &height);
-	for (uint32_t i = 0; i < n; i++, out += 4 * (size_t)width * height) {
-		struct engine_image image = {out, 4 * (size_t)width};
+	for (uint32_t i = 0; i < n; i++) {
 		const struct engine_request request = {i ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, (double)i / n};
-		if (engine_render(engine, &request, &image, &error) < 0)
+		if (engine_render(engine, &request, &images[i], &error) < 0)
 			fail(&error);
 	}
 }
@@ -69,16 +66,35 @@ static size_t largest_plane(const struct frame *frame)
 	return largest;
 }
 
-struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n)
+/* As a client that says that nothing has changed since its last frame. */
+static struct frame declared(const struct frame *frame, uint64_t id)
+{
+	struct frame next = *frame;
+	next.stream = 1;
+	next.header.frame_id = id;
+	next.header.damage_since = id - 1;
+	next.header.flags |= id > 1 ? PURSUIT_FRAME_DAMAGE : 0;
+	return next;
+}
+
+struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n,
+							  bool unchanged)
 {
 	const size_t picture = 4 * (size_t)frames->header.planes[0].width * frames->header.planes[0].height;
 	uint8_t *in = malloc(largest_plane(frames)), *out = malloc(n * picture);
 	double wall[BENCH_FRAMES], cpu[BENCH_FRAMES], copied[BENCH_FRAMES];
+	struct engine_image images[8] = {0};
 	memset(in, 0, largest_plane(frames));
 	for (int i = -WARM_UP; i < BENCH_FRAMES; i++) {
-		const struct frame *frame = &frames[(uint32_t)(i + WARM_UP) % count];
+		struct frame next = frames[(uint32_t)(i + WARM_UP) % count];
+		const struct frame *frame = &next;
+		if (unchanged)
+			next = declared(frames, (uint64_t)(i + WARM_UP + 1));
+		for (uint32_t k = 0; k < n && k < 8; k++)
+			images[k] = (struct engine_image){out + k * picture, picture / frame->header.planes[0].height,
+											  unchanged ? images[k].holds : 0};
 		double began = now_ms(CLOCK_MONOTONIC), cpu_began = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-		show(engine, frame, n, out);
+		show(engine, frame, n, images);
 		double ended = now_ms(CLOCK_MONOTONIC), cpu_ended = now_ms(CLOCK_PROCESS_CPUTIME_ID);
 		copy(frame, n, picture, in, out);
 		if (i < 0)

@@ -76,7 +76,7 @@ static void run(const struct goal *goal, const char *context, const char *method
 		struct frame frames[FRAMES];
 		render(goal, info->name, frames);
 		struct engine *engine = bench_engine(context, method);
-		struct bench_times times = bench_time(engine, frames, FRAMES, goal->n);
+		struct bench_times times = bench_time(engine, frames, FRAMES, goal->n, false);
 		print(goal, info->name, &times);
 		engine_destroy(&engine);
 		forget(frames);

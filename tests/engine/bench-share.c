@@ -52,7 +52,7 @@ static void run(const char *context, const char *method, uint32_t width, uint32_
 			still(&pictures[i], share);
 			frames[i] = pictures[i].frame;
 		}
-		struct bench_times times = bench_time(engine, frames, PICTURES, n);
+		struct bench_times times = bench_time(engine, frames, PICTURES, n, false);
 		printf("share/%ux%u/n%u/%u%% %.2f ms  least %.2f  cpu %.2f  memcpy %.2f\n", width, height, n, 10 * step,
 			   times.median, times.least, times.cpu, times.copy);
 		fflush(stdout);
@@ -66,9 +66,26 @@ static void run(const char *context, const char *method, uint32_t width, uint32_
 	engine_destroy(&engine);
 }
 
+static void rest(const char *context, const char *method, uint32_t width, uint32_t height)
+{
+	struct engine *engine = bench_engine(context, method);
+	struct picture picture;
+	picture_init(&picture, width, height, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
+	picture_draw_layers(&picture, 0.0);
+	still(&picture, 0.0);
+	for (int unchanged = 0; unchanged < 2; unchanged++) {
+		struct bench_times times = bench_time(engine, &picture.frame, 1, 2, unchanged);
+		printf("still/%ux%u/n2/%s %.3f ms  least %.3f  cpu %.3f  memcpy %.2f\n", width, height,
+			   unchanged ? "declared" : "found by looking", times.median, times.least, times.cpu, times.copy);
+	}
+	picture_finish(&picture);
+	engine_destroy(&engine);
+}
+
 int main(int argc, char **argv)
 {
 	const char *context = argc > 1 ? argv[1] : "cpu", *method = argc > 2 ? argv[2] : NULL;
+	rest(context, method, 1920, 1080);
 	run(context, method, 640, 360, 2);
 	run(context, method, 1024, 1024, 3);
 	run(context, method, 1920, 1080, 2);

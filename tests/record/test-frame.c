@@ -83,6 +83,12 @@ SPOIL(near_infinite, (h->near_distance = INFINITY, h->far_distance = INFINITY))
 SPOIL(far_below_near, h->far_distance = 0.05f)
 SPOIL(far_negative, (h->near_distance = 0.0f, h->far_distance = -1.0f))
 SPOIL(far_nan, h->far_distance = NAN)
+SPOIL(damage_without_flag, h->damage_since = 1)
+SPOIL(damage_count_without_flag, h->damage_count = 2)
+SPOIL(damage_rest, h->damage[7].x = 1)
+SPOIL(damage_since_itself, h->flags |= PURSUIT_FRAME_DAMAGE; h->damage_since = h->frame_id)
+SPOIL(damage_since_none, h->flags |= PURSUIT_FRAME_DAMAGE)
+SPOIL(reserved0, h->reserved0 = 7)
 SPOIL(reserved_first, h->reserved[0] = 3)
 SPOIL(reserved_last, h->reserved[sizeof(h->reserved) - 1] = 4)
 
@@ -147,6 +153,12 @@ static const struct spoiled spoiled[] = {
 	{"far_distance", ANY, far_below_near},
 	{"far_distance", ANY, far_negative},
 	{"far_distance", ANY, far_nan},
+	{"damage_since", 1, damage_without_flag},
+	{"damage_count", 2, damage_count_without_flag},
+	{"damage", 0, damage_rest},
+	{"damage_since", ANY, damage_since_itself},
+	{"damage_since", 0, damage_since_none},
+	{"reserved0", 7, reserved0},
 	{"reserved", 3, reserved_first},
 	{"reserved", 4, reserved_last},
 };

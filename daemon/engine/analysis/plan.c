@@ -100,7 +100,7 @@ int plan_make_with(struct plan *plan, const struct frame *frame, const struct pl
 	struct plan_intervals intervals = plan_intervals_of(&frame->header, params->real_interval_ns);
 	reset(plan, frame, params);
 	plan->real_interval_s = (double)intervals.real * 1e-9;
-	plan->rest = plan_rest_of(frame, &intervals);
+	plan->rest = params->unchanged ? PLAN_UNCHANGED : plan_rest_of(frame, &intervals);
 	if (plan->rest != PLAN_MOVES)
 		return 0;
 	uint32_t threshold = params->threshold_quarter ? params->threshold_quarter : 2;

@@ -18,6 +18,8 @@ const char *plan_rest_name(enum plan_rest rest)
 		return "no-motion";
 	case PLAN_NO_INTERVAL:
 		return "no-interval";
+	case PLAN_UNCHANGED:
+		return "unchanged";
 	case PLAN_MOVES:
 	default:
 		return "";

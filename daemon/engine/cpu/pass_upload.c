@@ -24,6 +24,8 @@ static void take_rows(struct engine *engine, enum picture_id id, uint32_t item)
 	const struct canvas *canvas = &cpu_of(engine)->pictures[id];
 	struct bounds bounds = {0};
 	for (uint32_t y = item * ROWS_OF_ITEM; y < (item + 1) * ROWS_OF_ITEM && y < plane->height; y++) {
+		if (opaque && !planes_changed(engine, y, 1))
+			continue;
 		const uint8_t *from = engine->job.frame->planes[index] + (size_t)y * plane->stride;
 		convert_row(convert, canvas_row(canvas, y), from, plane->width, opaque);
 		if (opaque)
@@ -60,7 +62,13 @@ static int run(struct engine *engine, struct error *error)
 	if (result < 0)
 		return result;
 	uint32_t items = (engine->height + ROWS_OF_ITEM - 1) / ROWS_OF_ITEM;
+	if (engine->damage.known)
+		cpu_picture(engine, PICTURE_ORIGINAL);
 	layers_clear(&executor->layers);
+	if (!planes_changed(engine, 0, engine->height)) {
+		report_leave_out(&engine->report, "upload", "unchanged");
+		return 0;
+	}
 	result = canvas_resize(&executor->pictures[PICTURE_ORIGINAL], engine->width, engine->height, error);
 	if (result == 0 && intake->ui >= 0)
 		result = canvas_resize(&executor->pictures[PICTURE_UI], engine->width, engine->height, error);

@@ -45,6 +45,8 @@ static int upload(struct engine *engine, enum picture_id id, const struct conver
 	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, id)->texture);
 	for (uint32_t y = 0; y < plane->height; y += block) {
 		uint32_t rows = plane->height - y < block ? plane->height - y : block;
+		if (!bounds && !planes_changed(engine, y, rows))
+			continue;
 		for (uint32_t i = 0; i < rows; i++) {
 			uint8_t *row = executor->staging + i * row_bytes;
 			convert_row(convert, row, data + (size_t)(y + i) * plane->stride, plane->width, !bounds);
@@ -53,8 +55,8 @@ static int upload(struct engine *engine, enum picture_id id, const struct conver
 		}
 		gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, (GLint)y, (GLsizei)plane->width, (GLsizei)rows, gl->pixel_format,
 						  gl->pixel_type, executor->staging);
+		engine->report.bytes_up += row_bytes * rows;
 	}
-	engine->report.bytes_up += row_bytes * plane->height;
 	return 0;
 }
 
@@ -62,6 +64,10 @@ static int run(struct engine *engine, struct error *error)
 {
 	int color, ui;
 	int result = planes_prepare(engine, &color, &ui, error);
+	if (result == 0 && !planes_changed(engine, 0, engine->height)) {
+		report_leave_out(&engine->report, "upload", "unchanged");
+		return 0;
+	}
 	if (result == 0)
 		result = upload(engine, PICTURE_ORIGINAL, &engine->color_convert, color, NULL, error);
 	if (result == 0 && ui >= 0)
