@@ -240,6 +240,8 @@ struct recorder *recorder_create(const struct recorder_params *params, struct er
 {
 	struct recorder *recorder = calloc(1, sizeof(*recorder));
 	if (!recorder) {
+		if (params->writer.fd > 0)
+			close(params->writer.fd);
 		error_set(error, -ENOMEM, "recording: out of memory");
 		return NULL;
 	}

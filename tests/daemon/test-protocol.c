@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <pthread.h>
 #include <signal.h>
+#include <stdatomic.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -23,9 +24,9 @@ static struct fixture fixture;
 
 static struct {
 	pthread_t thread;
-	volatile bool stop;
+	atomic_bool stop;
 	uint64_t reports; /* atomic */
-	bool failed;
+	atomic_bool failed;
 } neighbour;
 
 static void *be_served(void *data)
