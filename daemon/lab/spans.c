@@ -17,6 +17,9 @@ static const struct span_info infos[SPANS] = {
 							"how late the event that tells of a flip is: its spread is the event jitter"},
 	[SPAN_FLIP_TO_EDGE] = {"flip_to_edge", POINT_FLIP, POINT_EDGE, false, false,
 						   "flip, the line has changed (the offset asked for is in it)"},
+	[SPAN_EVENT_TO_EDGE] =
+		{"event_to_edge", POINT_EVENT, POINT_EDGE, false, false,
+		 "the lab was told of a flip, the line has changed: what the lab itself takes, and the offset"},
 	[SPAN_GPIO_SET] = {"gpio_set", POINT_EDGE, POINT_EDGE, false, false,
 					   "the call that sets the line: the edge is somewhere in it"},
 	[SPAN_FLIP_TO_PHOTON] = {"flip_to_photon", POINT_FLIP, POINT_PHOTON, false, false, "flip, light"},

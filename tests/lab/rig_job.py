@@ -295,7 +295,9 @@ def check_strobe():
     with subprocess.Popen([RIG_LAB, "--flips", "600", "--strobe-line", "STROBE", "--strobe-phase", "0.1",
                            "--strobe-duty", "0.5", "--strobe-limit", "0.5"], stderr=subprocess.DEVNULL,
                           stdout=subprocess.DEVNULL) as lab:
-        time.sleep(1.003)
+        time.sleep(1)
+        while read(f"{CHIP}/sim_gpio6/value").strip() != "1":
+            time.sleep(0.0005)
         lab.kill()
         lab.wait()
         time.sleep(0.5)
@@ -328,6 +330,8 @@ def check_daemon():
     print(f"{len(rows)} refreshes, {len(marks)} edges")
     check(len(rows) > 300, "daemon: rows", len(rows), said)
     check(len(marks) - len(rows) in (0, 1), "daemon: edges", len(marks), "of", len(rows))
+    errors = sorted(int(row["edge_ns"] or 0) / 1e3 - mark for row, mark in zip(rows, marks))
+    print(f"log less tracepoint: median {errors[len(errors) // 2]:.1f}, {errors[0]:.1f} to {errors[-1]:.1f} us")
     far = [row for row, mark in zip(rows, marks) if not -1000 < int(row["edge_ns"] or 0) - mark * 1000 < 60000]
     check(not far, "daemon:", len(far), "edges of the log are not where the kernel saw them", far[:2])
     reals = [row for row in rows if row["show"] == "real"]
@@ -368,9 +372,11 @@ def check_realtime():
     for priority in (20, 0):
         status, edges, vblanks = watched("--gpio-line", "MARKER", "--lab-priority", str(priority), flips=2400)
         span, set_span, event = (status["spans"][name] for name in ("flip_to_edge", "gpio_set", "flip_to_event"))
+        own = status["spans"]["event_to_edge"]
         print(f"priority {priority}: flip to edge mean {span['mean_us']:.0f}, median {span['p50_us']:.0f}, 99 % "
               f"{span['p99_us']:.0f}, max {span['max_us']:.0f} us; event mean {event['mean_us']:.0f}, 99 % "
-              f"{event['p99_us']:.0f} us; set mean {set_span['mean_us']:.1f}, 99 % {set_span['p99_us']:.1f} us; "
+              f"{event['p99_us']:.0f} us; event to edge mean {own['mean_us']:.0f}, "
+              f"median {own['p50_us']:.0f}, 99 % {own['p99_us']:.0f}, max {own['max_us']:.0f} us; set mean {set_span['mean_us']:.1f}, 99 % {set_span['p99_us']:.1f} us; "
               f"{len(edges)} edges of {status['flips']} flips; {status['cpu_us_per_flip']:.0f} us of CPU a flip")
         if priority:
             check(status["lost_edges"] == 0, "realtime: lost", status["lost_edges"])
