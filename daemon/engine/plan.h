@@ -44,6 +44,19 @@ struct plan_vertex {
 	float snapped; /* 1: at a discontinuity, 0: not */
 };
 
+/* Pixels a side of the tiles that the plan tells about. */
+#define PLAN_TILE 64u
+
+/* What a tile's triangles need; the first of INVALID, DISCONTINUOUS, STILL, UNIFORM that fits. */
+enum plan_tile_class {
+	PLAN_TILE_STILL = 0,     /* no vertex moves */
+	PLAN_TILE_UNIFORM,       /* all vertices move alike within the tolerance asked for */
+	PLAN_TILE_SMOOTH,        /* no vertex is snapped */
+	PLAN_TILE_DISCONTINUOUS, /* some are */
+	PLAN_TILE_INVALID,       /* motion there is no number */
+	PLAN_TILE_CLASSES,
+};
+
 struct plan_kernels;
 
 struct plan {
@@ -62,6 +75,7 @@ struct plan {
 	uint32_t doubtful;       /* others with stretch(last_phase) > 1.25, that is with w > 0 */
 	uint64_t invalid_pixels; /* of the picture: NaN or infinite motion there; 0 without looking if cut and the like */
 	float max_displacement;  /* of any vertex, pixels per real interval */
+	uint8_t *invalid_tiles;  /* by tile, row by row: some invalid pixel in it; NULL: none. Until the next plan_make() */
 	/* owned storage, reused from frame to frame; no allocation in the steady state */
 	uint32_t vertex_capacity, index_capacity;
 	void *scratch;
@@ -81,6 +95,13 @@ int plan_make(struct plan *plan, const struct frame *frame, const struct plan_pa
 
 /* "still", "cut", ...; "" for PLAN_MOVES. Static. */
 const char *plan_rest_name(enum plan_rest rest);
+
+/*
+ * The class of a tile, and how many of each there are. `tolerance`: pixels of displacement over one real interval,
+ * as the method merges cells.
+ */
+enum plan_tile_class plan_tile_class(const struct plan *plan, uint32_t column, uint32_t row, float tolerance);
+void plan_count_tiles(const struct plan *plan, float tolerance, uint32_t counts[PLAN_TILE_CLASSES]);
 
 /* One JSON object on one line, with a newline: sizes, counts, rest, bounds; no vertices. */
 void plan_print(const struct plan *plan, FILE *out);

@@ -20,6 +20,7 @@ struct plan_motion {
 	float *decoded;                   /* a row of motion as floats, when half */
 	uint8_t slots[PLAN_MAX_CELL + 1]; /* what each slot holds, enum plan_slot */
 	uint64_t invalid;
+	uint8_t *invalid_tiles; /* by tile of PLAN_TILE; made when the first invalid pixel is met */
 };
 
 /* T / S and the tracking limit. Times in seconds, both known. */

@@ -24,6 +24,7 @@ static void reset(struct plan *plan, const struct frame *frame, const struct pla
 	plan->columns = plan->rows = plan->index_count = 0;
 	plan->snapped = plan->folded = plan->doubtful = 0;
 	plan->invalid_pixels = 0;
+	plan->invalid_tiles = NULL;
 	plan->max_displacement = 0;
 }
 
@@ -112,6 +113,7 @@ int plan_make_with(struct plan *plan, const struct frame *frame, const struct pl
 	if (analyse(&motion, &grid))
 		return out_of_memory(plan, error);
 	plan->invalid_pixels = motion.invalid;
+	plan->invalid_tiles = motion.invalid ? motion.invalid_tiles : NULL;
 	return 0;
 }
 

@@ -26,6 +26,19 @@ const char *plan_rest_name(enum plan_rest rest)
 	}
 }
 
+/* What `pursuit` takes for alike: a thirty-second of a pixel. */
+#define ALIKE (1.0f / 32.0f)
+
+static void print_tiles(const struct plan *plan, FILE *out)
+{
+	static const char *const names[PLAN_TILE_CLASSES] = {"still", "uniform", "smooth", "discontinuous", "invalid"};
+	uint32_t counts[PLAN_TILE_CLASSES];
+	plan_count_tiles(plan, ALIKE, counts);
+	for (int i = 0; i < PLAN_TILE_CLASSES; i++)
+		fprintf(out, "%s\"%s\": %u", i ? ", " : "\"tiles\": {", names[i], counts[i]);
+	fprintf(out, "}, ");
+}
+
 void plan_print(const struct plan *plan, FILE *out)
 {
 	fprintf(out, "{\"frame\": %" PRIu64 ", \"width\": %u, \"height\": %u, \"cell\": %u, \"rest\": \"%s\", ",
@@ -36,5 +49,6 @@ void plan_print(const struct plan *plan, FILE *out)
 			plan->columns * plan->rows, plan->index_count / 3);
 	fprintf(out, "\"snapped\": %u, \"folded\": %u, \"doubtful\": %u, \"invalid_pixels\": %" PRIu64 ", ", plan->snapped,
 			plan->folded, plan->doubtful, plan->invalid_pixels);
+	print_tiles(plan, out);
 	fprintf(out, "\"max_displacement\": %.6f}\n", (double)plan->max_displacement);
 }
