@@ -70,13 +70,20 @@ static void warm_up(struct render *render)
 	free(memory);
 }
 
+static int get_params(const struct render *render, struct engine_params *params, struct error *error)
+{
+	const int result = settings_engine_params(render->settings, params, error);
+	/* Where real frames are as fast as the display there is nothing between them. */
+	governor_apply(render->passes_through ? GOVERNOR_LEVELS - 1 : render->governor.level, params);
+	return result;
+}
+
 int draw_make_engine(struct render *render, struct error *error)
 {
 	struct engine_params params;
-	const int result = settings_engine_params(render->settings, &params, error);
+	const int result = get_params(render, &params, error);
 	if (result < 0)
 		return result;
-	governor_apply(render->governor.level, &params);
 	render->engine = engine_create(&params, error);
 	if (!render->engine)
 		return -EIO;
@@ -319,18 +326,16 @@ static void settle_real(struct render *render, const struct pacer_decision *deci
 	give_hint(render, decision);
 }
 
-static void set_level(struct render *render, uint32_t before)
+/* The level of what is begun from now on. */
+static void set_level(struct render *render)
 {
 	struct engine_params params;
 	struct error error;
-	if (settings_engine_params(render->settings, &params, &error) < 0)
-		return;
-	governor_apply(render->governor.level, &params);
-	if (engine_set_params(render->engine, &params, &error) < 0)
+	if (get_params(render, &params, &error) < 0 || engine_set_params(render->engine, &params, &error) < 0)
 		log_warning(render->log, "governor: %s", error.text);
 	render->between_cost = render->plain_cost = (struct cost){.count = 0};
-	log_debug(render->log, "governor: %s, after %s at a load of %.2f", governor_level_name(render->governor.level),
-			  governor_level_name(before), render->governor.load);
+	log_debug(render->log, "governor: %s at a load of %.2f%s", governor_level_name(render->governor.level),
+			  render->governor.load, render->passes_through ? ", but frames pass through" : "");
 }
 
 /* What the frame before took settles the level of the one that will be shown first at `vblank`. */
@@ -345,13 +350,17 @@ static void govern(struct render *render, uint64_t now_ns, uint64_t vblank)
 		.late_in_betweens = (uint32_t)late,
 	};
 	const uint32_t before = render->governor.level;
+	const bool passed = render->passes_through;
+	render->passes_through = pacer_passes_through(&render->pacer);
 	render->work_ns = 0;
 	render->late_counted = render->stats->late_in_betweens;
 	/* A pause of the stream teaches nothing; one for want of time does. */
 	const bool paused = render->pause_vblanks > 0 || vblanks > GOVERNED_VBLANKS;
 	const bool busy = sample.work_ns > sample.time_ns / 2;
-	if (render->begun && (busy || !paused) && governor_add(&render->governor, &sample) != before)
-		set_level(render, before);
+	if (render->begun && !passed && (busy || !paused))
+		governor_add(&render->governor, &sample);
+	if (render->governor.level != before || render->passes_through != passed)
+		set_level(render);
 	render->stats->governor = render->governor;
 }
 

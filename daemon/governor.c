@@ -8,6 +8,8 @@
 #define SECOND_NS UINT64_C(1000000000)
 #define LOAD_HIGH 0.9
 #define LOAD_LOW 0.65
+/* Below it what is late is so for another reason, and less work would not mend it. */
+#define LOAD_TO_BLAME 0.5
 #define LOAD_MEMORY 8.0
 #define LATE_FRAMES 16u
 #define LATE_MOST 3u
@@ -85,7 +87,8 @@ uint32_t governor_add(struct governor *governor, const struct governor_sample *s
 	const uint32_t late = count_late(governor);
 	const uint64_t since_ns = now_ns - governor->changed_ns;
 	const bool calm = governor->load < LOAD_LOW || since_ns > BEARABLE_TIMES * governor->patience_ns;
-	if ((governor->load > LOAD_HIGH || late >= LATE_MOST) && governor->level < GOVERNOR_LEVELS - 1)
+	const bool high = governor->load > LOAD_HIGH || (late >= LATE_MOST && governor->load > LOAD_TO_BLAME);
+	if (high && governor->level < GOVERNOR_LEVELS - 1)
 		raise(governor, now_ns);
 	else if (governor->level > governor->least && governor->load <= LOAD_HIGH && late == 0 && calm &&
 			 since_ns > governor->patience_ns)
@@ -109,6 +112,8 @@ void governor_apply(uint32_t level, struct engine_params *params)
 		params->blur = ENGINE_BLUR_OFF;
 		params->no_compensation = true;
 	}
+	if (level >= HOLD)
+		params->method = "hold";
 }
 
 bool governor_draws(uint32_t level, uint64_t k)

@@ -11,14 +11,14 @@
  *   1      coarse  cells of twice the size
  *   2      plain   blur and boost
  *   3      fewer   every second in-between: the picture before stays for it
- *   4      hold    all in-betweens: each real frame stays
+ *   4      hold    all in-betweens: each real frame stays; nothing is analysed
  *
  * Up a level when the load (work / time there was for it, mean of about eight
- * frames) is above 0.9, or when three in-betweens of the last sixteen frames were
- * late; eight frames at least from level to level. Down a level when the load
- * is below 0.65 or has been bearable for a while, nothing is late, and the last
- * change is a second old. A level that had to be left again within two seconds
- * is tried only after twice the time, up to 32 s.
+ * frames) is above 0.9, or above 0.5 when three in-betweens of the last sixteen
+ * frames were late; eight frames at least from level to level. Down a level when
+ * the load is below 0.65 or has been bearable for a while, nothing is late, and
+ * the last change is a second old. A level that had to be left again within two
+ * seconds is tried only after twice the time, up to 32 s.
  *
  * Real frames are never left out. Replay does not govern: --level fixes it.
  */

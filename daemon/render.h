@@ -73,6 +73,7 @@ struct render {
 	bool paused;           /* the presenter sleeps */
 	struct cost real_cost, between_cost, plain_cost;
 	struct governor governor;
+	bool passes_through;    /* the engine makes nothing of frames but a picture */
 	uint64_t work_ns;       /* drawing since the last real frame began */
 	uint64_t late_counted;  /* late in-betweens that the governor knows of */
 	uint64_t margin_ns; /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
