@@ -127,8 +127,13 @@ static void write_header(struct latency_log *log, const char *header)
 	if (!out)
 		return;
 	latency_print_explanation(out);
-	for (const char *line = header; *line; line += strcspn(line, "\n"), line += *line == '\n')
-		fprintf(out, "# %.*s\n", (int)strcspn(line, "\n"), line);
+	for (const char *line = header; *line; line += *line == '\n') {
+		const size_t width = strcspn(line, "\n");
+		fputs("# ", out);
+		fwrite(line, 1, width, out);
+		fputc('\n', out);
+		line += width;
+	}
 	if (!log->binary)
 		fputs(latency_column_line(), out);
 	fclose(out);
