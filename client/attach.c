@@ -119,6 +119,7 @@ static int send_open_stream(struct shim_attach *attach, const struct shim_layout
 		.stream_id = STREAM_ID,
 		.slot_count = layout->slot_count,
 		.slot_bytes = layout->slot_bytes,
+		.flags = attach->wants_keys ? PURSUIT_OPEN_KEYS : 0,
 	};
 	const int fds[2] = {attach->offered->control_fd, attach->offered->planes_fd};
 
@@ -269,6 +270,33 @@ static void on_stream_closed(struct shim_attach *attach, uint64_t now_ns)
 	}
 }
 
+static const char *on_key(struct shim_attach *attach, const struct shim_packet *packet)
+{
+	const struct pursuit_message_key *message = &packet->key;
+
+	if (packet->bytes != sizeof(*message) || packet->fd_count > 0) {
+		return "a malformed KEY";
+	}
+	if (!attach->wants_keys || attach->state != PURSUIT_STATE_ATTACHED) {
+		return "a KEY that nobody asked for";
+	}
+	attach->keys[attach->keys_put++ % SHIM_KEYS] =
+		(struct pursuit_key){.time_ns = message->time_ns, .code = message->code};
+	return NULL;
+}
+
+bool shim_attach_next_key(struct shim_attach *attach, struct pursuit_key *key)
+{
+	if (attach->keys_put - attach->keys_taken > SHIM_KEYS) {
+		attach->keys_taken = attach->keys_put - SHIM_KEYS;
+	}
+	if (attach->keys_taken == attach->keys_put) {
+		return false;
+	}
+	*key = attach->keys[attach->keys_taken++ % SHIM_KEYS];
+	return true;
+}
+
 static const char *on_packet(struct shim_attach *attach, struct shim_packet *packet, uint64_t now_ns,
 							 enum shim_attach_change *change)
 {
@@ -283,6 +311,8 @@ static const char *on_packet(struct shim_attach *attach, struct shim_packet *pac
 		return on_stream_opened(attach, packet, change);
 	case PURSUIT_MESSAGE_REFUSED:
 		return on_refused(attach, packet, now_ns);
+	case PURSUIT_MESSAGE_KEY:
+		return on_key(attach, packet);
 	case PURSUIT_MESSAGE_STREAM_CLOSED:
 		on_stream_closed(attach, now_ns);
 		return NULL;

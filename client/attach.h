@@ -31,6 +31,7 @@
 
 #define SHIM_PATH_BYTES 256
 #define SHIM_MESSAGE_BYTES 192
+#define SHIM_KEYS 32u
 
 struct shim_attach {
 	enum pursuit_state state;
@@ -43,6 +44,9 @@ struct shim_attach {
 	uint64_t give_up_ns; /* while attaching */
 	uint64_t delay_ns;   /* before the next try of a missing daemon */
 	double refresh_hz;   /* 0: unknown */
+	bool wants_keys;
+	struct pursuit_key keys[SHIM_KEYS]; /* a ring; the oldest are lost */
+	uint64_t keys_put, keys_taken;      /* ever */
 	uint32_t path_count;
 	char paths[2][SHIM_PATH_BYTES]; /* tried in this order */
 	char name[64];
@@ -61,6 +65,9 @@ enum shim_attach_change {
 
 /* Does what is due. Returns at once. */
 enum shim_attach_change shim_attach_step(struct shim_attach *attach, const struct shim_layout *layout, uint64_t now_ns);
+
+/* The oldest key press not yet taken. */
+bool shim_attach_next_key(struct shim_attach *attach, struct pursuit_key *key);
 
 /* Wakes the daemon after a publication; only when attached. Never waits. */
 void shim_attach_wake(struct shim_attach *attach);

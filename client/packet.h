@@ -24,6 +24,7 @@ struct shim_packet {
 		struct pursuit_message_refused refused;
 		struct pursuit_message_stream_opened opened;
 		struct pursuit_message_close_stream closed;
+		struct pursuit_message_key key;
 	};
 	size_t bytes;   /* as received */
 	bool truncated; /* longer than any message that a client is sent */

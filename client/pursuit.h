@@ -128,6 +128,7 @@ struct pursuit_stream_params {
 	const char *socket_path; /* NULL: $PURSUIT_SOCKET if set; else $XDG_RUNTIME_DIR/pursuit/socket, and
 								where no daemon answers there, /run/pursuit/socket. Copied. */
 	const char *name;        /* what the daemon calls this stream; NULL: the program's name. Copied. */
+	int wants_keys;          /* 1: pursuit_next_key() tells of keys pressed in the daemon's window */
 };
 
 /* One plane of a slot: `height` rows from top to bottom, `stride` bytes apart. data is NULL if absent. */
@@ -199,6 +200,7 @@ struct pursuit_status {
 	uint64_t attaches;     /* how often a daemon accepted the stream */
 	uint64_t bytes_copied; /* by the shim itself: GL read-back into slots */
 	double refresh_hz;     /* of the display; 0: unknown */
+	int background;        /* 1: the daemon shows another stream instead of this one */
 	char message[192];     /* why the state is what it is, for a person */
 };
 
@@ -223,6 +225,14 @@ struct pursuit_feedback_report {
 	uint32_t late_in_betweens; /* of these, vblanks whose in-between was not ready: plain, or the picture before */
 	uint64_t next_submit_ns;   /* the daemon's hint when this was written; pursuit_next_start() knows newer ones */
 };
+
+/* A key was pressed in the daemon's window while this stream was shown. */
+struct pursuit_key {
+	uint64_t time_ns; /* CLOCK_MONOTONIC */
+	uint32_t code;    /* Unicode code point, lower case; 27: escape */
+};
+/* Not a key: the window is to be closed. Like 'q' and escape it asks the program to end. */
+#define PURSUIT_KEY_CODE_CLOSE 0x110100u
 
 struct pursuit_stream;
 
@@ -280,6 +290,12 @@ PURSUIT_API uint64_t pursuit_next_start(struct pursuit_stream *stream);
  * what it was; a caller that wants another one paces itself until that is what it has.
  */
 PURSUIT_API int pursuit_wait_next(struct pursuit_stream *stream, uint64_t timeout_ns);
+
+/*
+ * The oldest key press not yet fetched, of a stream opened with wants_keys. 1: *key is filled, 0: none. Does the
+ * attach work that is due, as pursuit_update() does. Of more than 32 that were not fetched the oldest are lost.
+ */
+PURSUIT_API int pursuit_next_key(struct pursuit_stream *stream, struct pursuit_key *key);
 
 /* The state of the stream and its counters. */
 PURSUIT_API void pursuit_get_status(struct pursuit_stream *stream, struct pursuit_status *status);

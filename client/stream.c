@@ -70,6 +70,7 @@ struct pursuit_stream *pursuit_open(const struct pursuit_stream_params *params)
 		errno = EINVAL;
 		return NULL;
 	}
+	stream->attach.wants_keys = params->wants_keys != 0;
 	stream->plain = shim_slots_create_plain(&stream->layout);
 	if (!stream->plain) {
 		free(stream);
@@ -354,6 +355,15 @@ int pursuit_wait_next(struct pursuit_stream *stream, uint64_t timeout_ns)
 	return in_time && slept;
 }
 
+int pursuit_next_key(struct pursuit_stream *stream, struct pursuit_key *key)
+{
+	if (!stream || !key) {
+		return 0;
+	}
+	step(stream, clock_now());
+	return shim_attach_next_key(&stream->attach, key);
+}
+
 void pursuit_get_status(struct pursuit_stream *stream, struct pursuit_status *status)
 {
 	if (!status) {
@@ -371,6 +381,8 @@ void pursuit_get_status(struct pursuit_stream *stream, struct pursuit_status *st
 	status->attaches = stream->attaches;
 	status->bytes_copied = stream->bytes_copied;
 	status->refresh_hz = stream->attach.refresh_hz;
+	status->background =
+		stream->shared && __atomic_load_n(&stream->shared->control->background, __ATOMIC_ACQUIRE) != 0;
 	memcpy(status->message, stream->attach.message, sizeof(status->message));
 }
 

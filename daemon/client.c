@@ -220,6 +220,7 @@ static int enter_stream(struct client *client, struct client_stream *entry, stru
 {
 	entry->client = client;
 	entry->stream = stream;
+	entry->wants_keys = client->packet->open.flags & PURSUIT_OPEN_KEYS;
 	client->stream_bytes += stream->planes_bytes;
 	entry->wake = loop_add(client->params->loop, stream->wake_fd, EPOLLIN | EPOLLET, on_wake, entry);
 	if (entry->wake && output_add_stream(client->params->output, stream))
@@ -284,8 +285,8 @@ static void on_open_stream(struct client *client)
 	if (client->packet->fd_count != 2)
 		malformed(client, "fds", client->packet->fd_count,
 				  "fds is %" PRIu32 ", must be 2: the control memfd and the planes memfd", client->packet->fd_count);
-	else if (open->flags != 0)
-		malformed(client, "flags", open->flags, "flags is %" PRIu32 ", must be 0", open->flags);
+	else if (open->flags & ~PURSUIT_OPEN_KEYS)
+		malformed(client, "flags", open->flags, "flags is %" PRIu32 ", must be 0 or 1", open->flags);
 	else if (open->reserved[0] | open->reserved[1] | open->reserved[2])
 		malformed(client, "reserved", open->reserved[0] | open->reserved[1] | open->reserved[2], "reserved is not 0");
 	else if (open_stream(client, &refusal) < 0)

@@ -23,6 +23,7 @@ struct client_stream {
 	struct client *client;
 	struct stream *stream; /* NULL: free */
 	struct loop_source *wake;
+	bool wants_keys;
 };
 
 struct client {

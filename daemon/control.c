@@ -364,13 +364,15 @@ static void on_key(struct control *control, const struct request *request)
 
 static void on_set(struct control *control, const struct request *request)
 {
-	static const char method[] = "method=";
+	static const char method[] = "method=", focus[] = "focus=";
 	struct error error = {""};
 	int result = -EINVAL;
-	if (strncmp(request->arguments, method, strlen(method)) == 0)
+	if (strncmp(request->arguments, focus, strlen(focus)) == 0)
+		result = server_focus(control->server, request->arguments + strlen(focus), &error);
+	else if (strncmp(request->arguments, method, strlen(method)) == 0)
 		result = output_set_method(control->params.output, request->arguments + strlen(method), &error);
 	else
-		error_set(&error, result, "set: \"%.64s\" cannot be set while the daemon runs; there is method=NAME",
+		error_set(&error, result, "set: \"%.64s\" cannot be set while the daemon runs; there are method=NAME and focus=CLIENT",
 				  request->arguments);
 	reply(control, request, result, result < 0 ? error.text : "set");
 }

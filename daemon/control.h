@@ -17,6 +17,7 @@
  *   record-stop             ends the recording; answered when it is on disk:
  *                           {frames, dropped, bytes, error}
  *   set method=NAME         the method from the next real frame on
+ *   set focus=CLIENT        shows this client, by number or name (see status)
  *   key KEY                 as if it had been pressed in the window: one
  *                           character, or escape, f1, close
  *   ping                    "pong"

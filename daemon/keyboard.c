@@ -26,8 +26,10 @@ static void next_method(struct keyboard *keyboard)
 /* A client that wants keys is asked first, since it may have something to save. */
 static void quit(struct keyboard *keyboard, const struct presenter_key *key)
 {
-	if (!keyboard->asked_to_quit && keyboard->server && server_send_key(keyboard->server, key)) {
-		keyboard->asked_to_quit = true;
+	uint64_t client_id = 0, stream_id = 0;
+	const bool any = keyboard->server && output_get_shown(keyboard->output, &client_id, &stream_id);
+	if (any && keyboard->asked_client != client_id && server_send_key(keyboard->server, key)) {
+		keyboard->asked_client = client_id;
 		return;
 	}
 	log_info(keyboard->log, "quit by key: stopping");

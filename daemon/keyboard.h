@@ -15,7 +15,7 @@ struct keyboard {
 	const struct log *log;
 	struct output *output;
 	struct server *server; /* NULL: none yet */
-	bool asked_to_quit;    /* the client was, and lives on */
+	uint64_t asked_client; /* to quit, by a key; 0: none */
 };
 
 /* As server_params.key. */

@@ -430,14 +430,50 @@ static void wake_locked(struct output *output)
 	pthread_cond_signal(&output->wake);
 }
 
+/* With the lock: the last one is shown, and all are told. */
+static void streams_have_changed(struct output *output)
+{
+	for (uint32_t i = 0; i < output->stream_count; i++)
+		__atomic_store_n(&output->streams[i]->control->background, i + 1 < output->stream_count, __ATOMIC_RELEASE);
+	output->streams_changed = true;
+	wake_locked(output);
+}
+
+bool output_focus(struct output *output, uint64_t client_id)
+{
+	pthread_mutex_lock(&output->lock);
+	uint32_t i = output->stream_count;
+	while (i > 0 && output->streams[i - 1]->client_id != client_id)
+		i--;
+	if (i > 0) {
+		struct stream *stream = output->streams[i - 1];
+		memmove(&output->streams[i - 1], &output->streams[i], (output->stream_count - i) * sizeof(output->streams[0]));
+		output->streams[output->stream_count - 1] = stream;
+		streams_have_changed(output);
+	}
+	pthread_mutex_unlock(&output->lock);
+	return i > 0;
+}
+
+bool output_get_shown(struct output *output, uint64_t *client_id, uint64_t *stream_id)
+{
+	pthread_mutex_lock(&output->lock);
+	const bool any = output->stream_count > 0;
+	if (any) {
+		*client_id = output->streams[output->stream_count - 1]->client_id;
+		*stream_id = output->streams[output->stream_count - 1]->stream_id;
+	}
+	pthread_mutex_unlock(&output->lock);
+	return any;
+}
+
 bool output_add_stream(struct output *output, struct stream *stream)
 {
 	pthread_mutex_lock(&output->lock);
 	const bool fits = output->stream_count < OUTPUT_STREAMS;
 	if (fits) {
 		output->streams[output->stream_count++] = stream_reference(stream);
-		output->streams_changed = true;
-		wake_locked(output);
+		streams_have_changed(output);
 	}
 	pthread_mutex_unlock(&output->lock);
 	return fits;
@@ -454,8 +490,7 @@ void output_remove_stream(struct output *output, struct stream *stream)
 		found = stream;
 		output->stream_count--;
 		memmove(&output->streams[i], &output->streams[i + 1], (output->stream_count - i) * sizeof(output->streams[0]));
-		output->streams_changed = true;
-		wake_locked(output);
+		streams_have_changed(output);
 	}
 	pthread_mutex_unlock(&output->lock);
 	stream_release(&found);

@@ -3,8 +3,8 @@
 
 /*
  * An output: presenter, pacer and engine on a render thread of its own. Streams
- * are given to it; the one opened last is shown, frames of the others are taken
- * and answered with REPLACED.
+ * are given to it; the one opened or focused last is shown, frames of the others
+ * are taken and answered with REPLACED, and their control pages say background.
  *
  * The render thread takes frames in itself (the slot that it reads must not be
  * exchanged meanwhile); main only wakes it. Main never waits for it, apart from
@@ -80,6 +80,11 @@ void output_remove_stream(struct output *output, struct stream *stream);
 
 /* How often the render thread has gone round; it stands still when that sleeps or is stuck. */
 uint64_t output_beats(const struct output *output);
+
+/* Shows the newest stream of this client from the next vblank that it has a frame for. False: it has none. */
+bool output_focus(struct output *output, uint64_t client_id);
+/* The stream that is shown. False: there is none. */
+bool output_get_shown(struct output *output, uint64_t *client_id, uint64_t *stream_id);
 
 /* Something may have changed: a stream has a new frame. Never waits long. */
 void output_wake(struct output *output);

@@ -17,7 +17,7 @@
 
 uint32_t overlay_scale(const struct overlay *overlay)
 {
-	return overlay->height < 300 || overlay->width < 480 ? 1 : overlay->height < 1000 ? 2 : 3;
+	return overlay->height < 540 || overlay->width < 800 ? 1 : overlay->height < 1100 ? 2 : 3;
 }
 
 static void fill(const struct overlay *overlay, uint32_t x, uint32_t y, uint32_t width, uint32_t height, uint32_t color)

@@ -257,9 +257,47 @@ uint32_t server_client_count(const struct server *server)
 
 bool server_send_key(struct server *server, const struct presenter_key *key)
 {
-	(void)server;
-	(void)key;
-	return false;
+	uint64_t client_id = 0, stream_id = 0;
+	if (!output_get_shown(server->params.output, &client_id, &stream_id))
+		return false;
+	struct client *client = find_client(server, client_id);
+	const struct client_stream *entry = client ? client_find_stream(client, stream_id) : NULL;
+	if (!entry || !entry->wants_keys)
+		return false;
+	const struct pursuit_message_key message = {
+		.header = {.type = PURSUIT_MESSAGE_KEY, .size = sizeof(message)},
+		.stream_id = stream_id,
+		.time_ns = key->time_ns,
+		.code = key->code,
+	};
+	client_send(client, &message, sizeof(message), -1);
+	return !client->gone;
+}
+
+/* ---- focus ---- */
+
+/* By number, or by name (of several the newest). */
+static struct client *find_named(const struct server *server, const char *name)
+{
+	char *end;
+	const unsigned long long id = strtoull(name, &end, 10);
+	if (*name >= '0' && *name <= '9' && !*end)
+		return find_client(server, id);
+	for (struct client *client = server->clients; client; client = client->next)
+		if (strcmp(client->name, name) == 0)
+			return client;
+	return NULL;
+}
+
+int server_focus(struct server *server, const char *name, struct error *error)
+{
+	const struct client *client = find_named(server, name);
+	if (!client)
+		return error_set(error, -ENOENT, "focus: there is no client \"%.64s\"; pursuit status lists them", name);
+	if (!output_focus(server->params.output, client->id))
+		return error_set(error, -ENOENT, "focus: client %.64s has no stream open", client->name);
+	log_info(server->params.log, "%s (pid %d) is shown", client->name, (int)client->peer.pid);
+	return 0;
 }
 
 /* ---- control ---- */
@@ -288,15 +326,18 @@ void server_reply(struct server *server, uint64_t client_id, uint32_t serial, in
 	free(packet);
 }
 
-static json_t *stream_json(const struct client *client, struct stream *stream)
+static json_t *stream_json(const struct server *server, const struct client *client, struct stream *stream)
 {
+	uint64_t shown_client = 0, shown_stream = 0;
+	output_get_shown(server->params.output, &shown_client, &shown_stream);
 	struct stream_counters *c = &stream->counters;
 	const uint64_t interval_ns = atomic_load(&c->interval_ns);
-	return json_pack("{s:I, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id", (json_int_t)stream->stream_id,
-					 "client", client->name, "pid", (int)client->peer.pid, "uid", (int)client->peer.uid, "width",
-					 (int)atomic_load(&c->width), "height", (int)atomic_load(&c->height), "frame_id",
-					 (json_int_t)atomic_load(&c->last_frame_id), "real_frames",
-					 (json_int_t)atomic_load(&c->real_frames), "refused_frames",
+	return json_pack("{s:I, s:I, s:b, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id",
+					 (json_int_t)stream->stream_id, "client_id", (json_int_t)client->id, "shown",
+					 (int)(shown_client == client->id && shown_stream == stream->stream_id), "client", client->name,
+					 "pid", (int)client->peer.pid, "uid", (int)client->peer.uid, "width", (int)atomic_load(&c->width),
+					 "height", (int)atomic_load(&c->height), "frame_id", (json_int_t)atomic_load(&c->last_frame_id),
+					 "real_frames", (json_int_t)atomic_load(&c->real_frames), "refused_frames",
 					 (json_int_t)atomic_load(&c->refused_frames), "lost_real_frames",
 					 (json_int_t)atomic_load(&c->lost_frames), "fps", interval_ns ? 1e9 / (double)interval_ns : 0.0);
 }
@@ -307,6 +348,6 @@ json_t *server_streams_json(const struct server *server)
 	for (const struct client *client = server->clients; client; client = client->next)
 		for (uint32_t i = 0; i < PURSUIT_MAX_STREAMS_PER_CLIENT; i++)
 			if (client->streams[i].stream)
-				json_array_append_new(array, stream_json(client, client->streams[i].stream));
+				json_array_append_new(array, stream_json(server, client, client->streams[i].stream));
 	return array;
 }

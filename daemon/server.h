@@ -54,7 +54,10 @@ void server_reply(struct server *server, uint64_t client_id, uint32_t serial, in
 /* Tells the client that is shown of a key. False: it does not want to know, or there is none. */
 bool server_send_key(struct server *server, const struct presenter_key *key);
 
-/* One object per stream; the one that was opened last is shown. */
+/* Shows this client's newest stream: by number, or by name. -ENOENT with a sentence. */
+int server_focus(struct server *server, const char *name, struct error *error);
+
+/* One object per stream. */
 json_t *server_streams_json(const struct server *server);
 uint32_t server_client_count(const struct server *server);
 

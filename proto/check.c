@@ -49,6 +49,8 @@ OFFSET(struct pursuit_message_refused, text, 96, WIRE);
 SIZE(struct pursuit_message_open_stream, 64, WIRE);
 SIZE(struct pursuit_message_stream_opened, 64, WIRE);
 SIZE(struct pursuit_message_close_stream, 32, WIRE);
+SIZE(struct pursuit_message_key, 48, WIRE);
+OFFSET(struct pursuit_message_key, code, 32, WIRE);
 SIZE(struct pursuit_message_control, 32, WIRE);
 
 SIZE(struct pursuit_recording_header, 32, DISK);

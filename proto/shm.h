@@ -98,7 +98,9 @@ struct pursuit_shm_control {
 	uint32_t reserved2[15];
 	uint64_t feedback_count; /* atomic: reports written so far */
 	struct pursuit_hint hint; /* written by the daemon */
-	uint64_t reserved3[3];
+	uint32_t background;      /* atomic, written by the daemon: 1 while another stream is shown instead of this one */
+	uint32_t reserved3;
+	uint64_t reserved5[2];
 	struct pursuit_frame_header headers[PURSUIT_MAX_SLOTS];
 	struct pursuit_feedback feedback[PURSUIT_FEEDBACK_ENTRIES];
 	uint8_t reserved4[1856];

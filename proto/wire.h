@@ -20,6 +20,7 @@
  *     CONTROL {text}                 ->
  *                                    <-        CONTROL_REPLY {status, text}
  *   at any time                      <-        REFUSED {code, field, value, text}
+ *   a key was pressed                <-        KEY {id, code, time}
  *
  * File descriptors travel as SCM_RIGHTS: with OPEN_STREAM the control memfd
  * and the planes memfd, in this order; with STREAM_OPENED the eventfd, made by
@@ -56,6 +57,7 @@
 #define PURSUIT_MESSAGE_STREAM_CLOSED 7u
 #define PURSUIT_MESSAGE_CONTROL 8u
 #define PURSUIT_MESSAGE_CONTROL_REPLY 9u
+#define PURSUIT_MESSAGE_KEY 10u
 
 /* 16 bytes. */
 struct pursuit_message {
@@ -111,12 +113,15 @@ struct pursuit_message_refused {
 	char text[160]; /* one sentence for a person */
 };
 
+/* struct pursuit_message_open_stream.flags */
+#define PURSUIT_OPEN_KEYS UINT32_C(1) /* send KEY for this stream */
+
 /* 64 bytes, with the two memfds. */
 struct pursuit_message_open_stream {
 	struct pursuit_message header;
 	uint64_t stream_id; /* chosen by the client, unique on its connection, not 0 */
 	uint32_t slot_count; /* PURSUIT_MIN_SLOTS to PURSUIT_MAX_SLOTS */
-	uint32_t flags;      /* 0 */
+	uint32_t flags;      /* PURSUIT_OPEN_*, or-ed */
 	uint64_t slot_bytes; /* a multiple of 4096 */
 	uint64_t reserved[3];
 };
@@ -137,6 +142,21 @@ struct pursuit_message_close_stream {
 	uint64_t stream_id;
 	uint64_t reserved;
 };
+
+/*
+ * A key was pressed in the daemon's window while this stream was shown, and the daemon has no use for it itself. Only
+ * for streams opened with PURSUIT_OPEN_KEYS. 48 bytes.
+ */
+struct pursuit_message_key {
+	struct pursuit_message header;
+	uint64_t stream_id;
+	uint64_t time_ns; /* CLOCK_MONOTONIC */
+	uint32_t code;    /* Unicode code point of what is printed on the key, lower case; 27 escape; or PURSUIT_KEY_CLOSE */
+	uint32_t reserved0;
+	uint64_t reserved1;
+};
+/* Not a key: the window is to be closed. Like 'q' and escape it asks the client to end. */
+#define PURSUIT_KEY_CLOSE UINT32_C(0x110100)
 
 /* CONTROL and CONTROL_REPLY: this, then text_bytes bytes of UTF-8. 32 bytes. */
 struct pursuit_message_control {

@@ -22,6 +22,7 @@ struct demo_client {
 	uint64_t next;     /* index of the next frame on the grid */
 	uint64_t previous; /* of the one submitted last */
 	uint64_t submitted, skipped;
+	bool quit;                     /* by key */
 	double *render_ms, *submit_us; /* the first MAX_TIMES of them */
 	uint32_t times;
 };
@@ -67,6 +68,7 @@ static int open_stream(struct demo_client *client, bool has_ui, const struct sce
 		.ui_format = has_ui ? PURSUIT_UI_BGRA8 : PURSUIT_UI_ABSENT,
 		.socket_path = client->params.socket,
 		.name = "pursuit demo",
+		.wants_keys = 1,
 	};
 	client->stream = pursuit_open(&params);
 	if (!client->stream)
@@ -163,6 +165,35 @@ static uint64_t next_index(struct demo_client *client)
 	return index;
 }
 
+static bool asks_to_end(uint32_t code)
+{
+	return code == 'q' || code == 27 || code == PURSUIT_KEY_CODE_CLOSE;
+}
+
+static void take_keys(struct demo_client *client)
+{
+	struct pursuit_key key;
+	while (pursuit_next_key(client->stream, &key)) {
+		if (asks_to_end(key.code))
+			client->quit = true;
+		else if (client->params.note)
+			client->params.note(client->params.context, ((double)key.time_ns - (double)client->epoch_ns) / 1e9,
+								key.code);
+	}
+}
+
+static void tell_frame(const struct demo_client *client)
+{
+	if (client->params.note)
+		client->params.note(client->params.context,
+							(double)scene_source_time(&client->params.rate, client->previous) / 1e9, 0);
+}
+
+bool demo_client_was_quit(const struct demo_client *client)
+{
+	return client->quit;
+}
+
 int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(void *context), void *context,
 					struct error *error)
 {
@@ -177,7 +208,9 @@ int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(voi
 		if (client->submitted)
 			client->next = next_index(client);
 		sleep_until(client->epoch_ns + scene_source_time(&client->params.rate, client->next));
+		take_keys(client);
 		result = render_one(client, client->next++, error);
+		tell_frame(client);
 		while (pursuit_poll_feedback(client->stream, &report))
 			;
 	}

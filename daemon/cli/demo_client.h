@@ -19,6 +19,12 @@ struct demo_client_params {
 	struct arg_size size;
 	struct arg_rate rate;
 	const char *socket;
+	/*
+	 * A key that does not end the run was pressed at `time`, or a frame of that time was rendered (key 0); seconds of
+	 * the scene. NULL: nobody wants to know.
+	 */
+	void (*note)(void *context, double time, uint32_t key);
+	void *context;
 };
 
 struct demo_client;
@@ -30,6 +36,9 @@ void demo_client_destroy(struct demo_client **client);
 /* Goes on rendering for so many seconds; stops early when `stop` says so (asked once a frame). */
 int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(void *context), void *context,
 					struct error *error);
+
+/* Was it asked to end, by a key in the daemon's window? */
+bool demo_client_was_quit(const struct demo_client *client);
 
 /* CLOCK_MONOTONIC of the scene's time 0. */
 uint64_t demo_client_epoch(const struct demo_client *client);

@@ -219,6 +219,18 @@ bool scene_source_render(struct scene_source *source, double time, double time_p
 	return gl_context_make_current(source->context) && scene_render(source->scene, &request, textures, camera);
 }
 
+void scene_source_key(struct scene_source *source, double time, int key)
+{
+	scene_key(source->scene, time, key);
+	if (source->fine)
+		scene_key(source->fine, time, key);
+}
+
+bool scene_source_get_score(const struct scene_source *source, double time, struct scene_score *score)
+{
+	return scene_get_score(source->scene, time, score);
+}
+
 scene_gl_lookup scene_source_lookup(const struct scene_source *source)
 {
 	return gl_context_get_lookup(source->context);

@@ -60,6 +60,9 @@ bool scene_source_moment(struct scene_source *source, const struct scene_request
  */
 bool scene_source_render(struct scene_source *source, double time, double time_previous,
 						 struct scene_textures *textures, struct scene_camera *camera);
+/* The task scene's keys and score (scene.h). */
+void scene_source_key(struct scene_source *source, double time, int key);
+bool scene_source_get_score(const struct scene_source *source, double time, struct scene_score *score);
 scene_gl_lookup scene_source_lookup(const struct scene_source *source);
 
 /* GL_RENDERER of the context; of a CPU renderer? */

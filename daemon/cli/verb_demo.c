@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "args.h"
@@ -16,6 +17,7 @@
 #include "demo_score.h"
 #include "figures.h"
 #include "interrupt.h"
+#include "task.h"
 #include "timeline.h"
 #include "verbs.h"
 
@@ -38,13 +40,15 @@ struct demo_options {
 	double seconds;
 	struct arg_size size;
 	struct arg_rate rate;
+	const char *methods;
+	double method_seconds;
 	bool json;
 	struct settings settings; /* of the daemon */
 };
 
 struct demo {
 	struct demo_options options;
-	char report[1024], svg[1024], contact[1024], recording[1024], log[1024];
+	char rings[1024], report[1024], svg[1024], contact[1024], recording[1024], log[1024];
 	char title[200];
 	struct scene_source *source;
 	struct demo_daemon daemon;
@@ -54,6 +58,9 @@ struct demo {
 	json_t *client_figures;
 	struct timeline timeline;
 	struct demo_score score;
+	struct task *task; /* NULL: the scene has none */
+	double task_time; /* of the score told last: it never goes back */
+	unsigned method_turn;
 };
 
 static bool read_options(struct demo_options *options, int argc, char **argv, int *status)
@@ -65,6 +72,9 @@ static bool read_options(struct demo_options *options, int argc, char **argv, in
 		{"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F",
 		 "frames that the client renders a second; 40 on a CPU, 60 on a GPU"},
 		{"out", ARG_TEXT, &options->out, 0, 0, NULL, "DIR", "where report, time line and contact sheet go (out-demo)"},
+		{"methods", ARG_TEXT, &options->methods, 0, 0, NULL, "LIST",
+		 "methods to show in turn, divided by commas, for the task of the scene rings"},
+		{"method-seconds", ARG_REAL, &options->method_seconds, 0.5, 86400, NULL, "S", "how long each of them (60)"},
 		{"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print report.json on stdout instead of the summary"},
 		{NULL},
 	};
@@ -89,8 +99,9 @@ static bool read_options(struct demo_options *options, int argc, char **argv, in
 
 static int make_paths(struct demo *demo, struct error *error)
 {
-	static const char *const names[] = {"report.json", "timeline.svg", "contact.png", "burst.pursuit", "pursuitd.log"};
-	char *const paths[] = {demo->report, demo->svg, demo->contact, demo->recording, demo->log};
+	static const char *const names[] = {"report.json",   "timeline.svg", "contact.png",
+										"burst.pursuit", "pursuitd.log", "rings.csv"};
+	char *const paths[] = {demo->report, demo->svg, demo->contact, demo->recording, demo->log, demo->rings};
 	const char *out = demo->options.out;
 	if (mkdir(out, 0777) < 0 && errno != EEXIST)
 		return error_set(error, -errno, "%s: %s", out, strerror(errno));
@@ -151,6 +162,67 @@ static void give_way(void)
 	setpriority(PRIO_PROCESS, 0, CLIENT_NICENESS);
 }
 
+/* ---- the task ---- */
+
+static double clock_seconds(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (double)now.tv_sec + (double)now.tv_nsec / 1e9;
+}
+
+/* What the daemon shows now; a key in the window may have changed it. */
+static void ask_method(struct demo *demo, char *method, size_t size)
+{
+	struct error error;
+	json_t *status = NULL;
+	if (control_ask(&demo->daemon.control, "status", -1, &status, &error) == 0)
+		snprintf(method, size, "%s", json_string_value(json_object_get(status, "method")));
+	json_decref(status);
+}
+
+static void note(void *context, double time, uint32_t key)
+{
+	struct demo *demo = context;
+	struct scene_score now;
+	char method[32] = "", text[128];
+	if (key != 0)
+		scene_source_key(demo->source, time, (int)key);
+	demo->task_time = fmax(demo->task_time, time);
+	scene_source_get_score(demo->source, demo->task_time, &now);
+	const struct task_score score = {now.shown, now.hits, now.misses, now.false_answers};
+	if (!task_changed(demo->task, &score))
+		return;
+	ask_method(demo, method, sizeof(method));
+	task_note(demo->task, time, &score, key, method);
+	task_describe(demo->task, text, sizeof(text));
+	if (isatty(STDERR_FILENO))
+		fprintf(stderr, "\r%s, %s   ", text, method);
+}
+
+/* The next of --methods when its time has come. */
+static void take_turns(struct demo *demo)
+{
+	char request[80];
+	struct error error;
+	const char *name = demo->options.methods;
+	const uint64_t epoch_ns = demo_client_epoch(demo->client);
+	if (!name || epoch_ns == 0 || clock_seconds() < (double)epoch_ns / 1e9)
+		return;
+	const unsigned turn = (unsigned)((clock_seconds() - (double)epoch_ns / 1e9) / demo->options.method_seconds) + 1;
+	if (turn == demo->method_turn)
+		return;
+	demo->method_turn = turn;
+	unsigned count = 1;
+	for (const char *c = name; *c; c++)
+		count += *c == ',';
+	for (unsigned i = 0; i < (turn - 1) % count; i++)
+		name = strchr(name, ',') + 1;
+	snprintf(request, sizeof(request), "set method=%.*s", (int)strcspn(name, ","), name);
+	if (control_ask(&demo->daemon.control, request, -1, NULL, &error) < 0)
+		args_failed(VERB, "%s", error.text);
+}
+
 static int start(struct demo *demo, struct error *error)
 {
 	int result = make_paths(demo, error);
@@ -162,11 +234,16 @@ static int start(struct demo *demo, struct error *error)
 	}
 	if (result < 0)
 		return result;
+	struct scene_score score;
+	if (scene_source_get_score(demo->source, 0, &score))
+		demo->task = task_create();
 	const struct demo_client_params params = {
 		.source = demo->source,
 		.size = demo->options.size,
 		.rate = demo->options.rate,
 		.socket = demo->daemon.socket,
+		.note = demo->task ? note : NULL,
+		.context = demo,
 	};
 	demo->client = demo_client_create(&params, error);
 	return demo->client ? 0 : -EIO;
@@ -177,7 +254,8 @@ static int start(struct demo *demo, struct error *error)
 static bool over(void *context)
 {
 	struct demo *demo = context;
-	return interrupt_seen() || !demo_daemon_lives(&demo->daemon);
+	take_turns(demo);
+	return interrupt_seen() || demo_client_was_quit(demo->client) || !demo_daemon_lives(&demo->daemon);
 }
 
 /* After Ctrl-C the burst is still wanted. */
@@ -269,6 +347,8 @@ static json_t *make_report(const struct demo *demo)
 	json_object_set_new(report, "settings", figures_settings_json(&options->settings));
 	json_object_set(report, "client", demo->client_figures);
 	json_object_set(report, "scored", demo->score.scored);
+	if (demo->task)
+		json_object_set_new(report, "task", task_json(demo->task));
 	return report;
 }
 
@@ -306,6 +386,11 @@ static void print_summary(const struct demo *demo, const json_t *report)
 	printf("  client: rendering %.1f ms, submit %.0f us (medians), %.0f of its frames skipped\n",
 		   figure(client, "render_ms", "p50"), figure(client, "submit_us", "p50"),
 		   figure(client, "skipped_frames", NULL));
+	if (demo->task) {
+		char text[128];
+		task_describe(demo->task, text, sizeof(text));
+		printf("  %s; %s\n", text, demo->rings);
+	}
 	printf("  %s, %s, %s, %s\n", demo->report, demo->svg, demo->contact, demo->recording);
 }
 
@@ -318,6 +403,8 @@ static int leave_results(struct demo *demo, struct error *error)
 	}
 	if (result == 0)
 		result = draw_timeline(demo, error);
+	if (result == 0 && demo->task)
+		result = task_write_csv(demo->task, demo->rings, error);
 	json_t *report = make_report(demo);
 	if (!report)
 		return error_set(error, -ENOMEM, "out of memory");
@@ -338,6 +425,7 @@ static void finish(struct demo *demo)
 	demo_client_destroy(&demo->client);
 	scene_source_destroy(&demo->source);
 	timeline_finish(&demo->timeline);
+	task_destroy(&demo->task);
 	json_decref(demo->status);
 	json_decref(demo->client_figures);
 	json_decref(demo->score.scored);
@@ -370,7 +458,7 @@ static int run_demo(struct demo *demo)
 
 int verb_demo(int argc, char **argv)
 {
-	struct demo demo = {.options = {.scene = "colonnade", .out = "out-demo", .seconds = 60}};
+	struct demo demo = {.options = {.scene = "colonnade", .out = "out-demo", .seconds = 60, .method_seconds = 60}};
 	struct error error;
 	int status;
 	settings_defaults(&demo.options.settings);

@@ -110,6 +110,20 @@ int output_set_method(struct output *output, const char *name, struct error *err
 	return 0;
 }
 
+bool output_focus(struct output *output, uint64_t client_id)
+{
+	return output->stream_count > 0;
+}
+
+bool output_get_shown(struct output *output, uint64_t *client_id, uint64_t *stream_id)
+{
+	if (output->stream_count > 0) {
+		*client_id = output->streams[0]->client_id;
+		*stream_id = output->streams[0]->stream_id;
+	}
+	return output->stream_count > 0;
+}
+
 void output_press_key(struct output *output, const struct presenter_key *key)
 {
 }

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""Installed into an empty root: everything in its place, used from there, and gone again."""
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+BUILD, SOURCE, MESON, CC = (os.environ[name] for name in ("BUILD", "SOURCE", "MESON", "CC"))
+SANITIZED = os.environ["SANITIZE"] != "none"
+
+
+def run(*arguments, **options):
+    return subprocess.run(arguments, capture_output=True, text=True, timeout=240, **options)
+
+
+class Install(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.root = tempfile.mkdtemp(prefix="pursuit-install-")
+        cls.files = []
+        result = run(MESON, "install", "-C", BUILD, "--no-rebuild", "--destdir", cls.root)
+        assert result.returncode == 0, result.stdout + result.stderr
+        for folder, _, names in os.walk(cls.root):
+            cls.files += [os.path.relpath(os.path.join(folder, name), cls.root) for name in names]
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.root)
+
+    def find(self, end):
+        found = [name for name in self.files if name.endswith(end)]
+        self.assertEqual(len(found), 1, f"{end}: {found}")
+        return os.path.join(self.root, found[0])
+
+    def test_places(self):
+        for end in (
+            "/bin/pursuit", "/bin/pursuitd", "/include/pursuit.h", "/libpursuit.so", "/libpursuit.so.0",
+            "/pkgconfig/libpursuit.pc", "/doc/pursuit/LICENSE", "/doc/pursuit/integration.md",
+            "/doc/pursuit/examples/example-memory.c", "/doc/pursuit/pictures/mistakes.png",
+            "/lib/systemd/system/pursuit.service", "/lib/systemd/system/pursuit.socket",
+            "/lib/systemd/user/pursuit.service", "/lib/systemd/user/pursuit.socket", "/lib/sysusers.d/pursuit.conf",
+            "/lib/tmpfiles.d/pursuit.conf", "/udev/rules.d/70-pursuit.rules",
+        ):
+            self.assertTrue(os.path.exists(self.find(end)))
+
+    def test_nothing_else(self):
+        for name in self.files:
+            self.assertNotIn("=", name)
+            self.assertFalse(name.endswith(("meson.build", ".py", ".in")), name)
+        headers = [name for name in self.files if "/include/" in name]
+        self.assertEqual([os.path.basename(name) for name in headers], ["pursuit.h"])
+
+    def test_units_name_the_program(self):
+        prefix = next(name for name in self.files if name.endswith("bin/pursuitd"))
+        for scope in "system", "user":
+            with open(self.find(f"/lib/systemd/{scope}/pursuit.service"), encoding="utf-8") as unit:
+                self.assertIn(f"ExecStart=/{prefix}", unit.read())
+
+    def test_outside_program(self):
+        """An example, built from where it was installed, through pkg-config alone, against the installed library."""
+        environment = {**os.environ, "PKG_CONFIG_SYSROOT_DIR": self.root,
+                       "PKG_CONFIG_LIBDIR": os.path.dirname(self.find("/libpursuit.pc"))}
+        flags = run("pkg-config", "--cflags", "--libs", "libpursuit", env=environment)
+        self.assertEqual(flags.returncode, 0, flags.stderr)
+        program = os.path.join(self.root, "outside")
+        built = run(CC, "-std=c11", "-D_GNU_SOURCE", "-Wall", "-Wextra", "-Werror", self.find("/example-memory.c"), "-o",
+                    program, *flags.stdout.split(), "-lm")
+        self.assertEqual(built.returncode, 0, built.stderr)
+        if SANITIZED:
+            return
+        libraries = {**os.environ, "LD_LIBRARY_PATH": os.path.dirname(self.find("/libpursuit.so")),
+                     "PURSUIT_SOCKET": os.path.join(self.root, "socket")}
+        self.assertEqual(run(program, "--seconds", "0.2", env=libraries).returncode, 0)
+
+    def test_runs_from_there(self):
+        """The command finds the daemon that lies beside it."""
+        out = os.path.join(self.root, "out")
+        result = run(self.find("/bin/pursuit"), "demo", "--scene", "still", "--size", "64x36", "--seconds", "1", "--out",
+                     out, cwd="/")
+        if "no GL context" in result.stderr:
+            self.skipTest("no GL context for scenes")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertTrue(os.path.exists(os.path.join(out, "report.json")))
+
+    def test_daemon_from_there(self):
+        environment = {**os.environ, "PURSUIT_SOCKET": os.path.join(self.root, "socket")}
+        daemon = subprocess.Popen([self.find("/bin/pursuitd"), "--present", "headless"], env=environment,
+                                  stderr=subprocess.DEVNULL)
+        try:
+            for _ in range(300):
+                if run(self.find("/bin/pursuit"), "status", env=environment).returncode == 0:
+                    break
+                time.sleep(0.1)
+            else:
+                self.fail("the daemon does not answer")
+        finally:
+            daemon.send_signal(signal.SIGTERM)
+        self.assertEqual(daemon.wait(60), 0)
+
+
+if __name__ == "__main__":
+    if not shutil.which("pkg-config") or not MESON:
+        print("skipped: no pkg-config or no meson")
+        sys.exit(77)
+    unittest.main(verbosity=2)
