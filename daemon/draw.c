@@ -171,6 +171,8 @@ static int queue(struct render *render, const struct presenter_image *image, uin
 	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
 	if (result == 0)
 		render->serial = serial;
+	if (result == 0 && render->tee)
+		tee_add(render->tee, image, render->group, serial);
 	return result;
 }
 
@@ -432,4 +434,6 @@ void draw_plain(struct render *render, uint64_t vblank)
 	showing_add_picture(&render->showing, &picture);
 	lab_mark_picture(render->lab, &image, picture.serial, render->real_vblank, POINTS_STANDBY);
 	render->presenter->impl->set_standby(render->presenter, &image, render->group, picture.serial);
+	if (render->tee)
+		tee_add(render->tee, &image, render->group, picture.serial);
 }

@@ -83,6 +83,8 @@ static const struct option_row rows[] = {
 		 "lost, the list is tried again."),
 	RATE(refresh, "refresh", OPTION_OUTPUT, "120", 1, 1000,
 		 "Display rate as 120, 119.88 or 120000/1001; a presenter with a display of its own may have another."),
+	TEXT(tee, "tee", OPTION_OUTPUT, "",
+		 "Record what is shown, each vblank once, into this YUV4MPEG2 file, and the times beside it in FILE.csv."),
 	TEXT(monitor, "monitor", OPTION_OUTPUT, "",
 		 "glfw: name of the monitor, or its number from 0, for full screen and for the rate; empty: the primary one."),
 	FLAG(fullscreen, "fullscreen", OPTION_OUTPUT, "no",

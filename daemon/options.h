@@ -45,6 +45,7 @@ struct settings {
 	uint32_t window_height;
 	char connector[32];         /* "": the first that is connected */
 	char mode[32];              /* WxH@R; "": chosen by the refresh rate */
+	char tee[512];              /* "": what is shown is not recorded */
 	char kms_device[104];       /* "": the first with a display */
 	struct lab_settings lab;
 	/* daemon */

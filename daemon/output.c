@@ -9,16 +9,14 @@
 #include <string.h>
 #include <sys/eventfd.h>
 #include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
 #include <time.h>
 #include <unistd.h>
 
 #include "daemon/display.h"
 #include "daemon/render.h"
+#include "daemon/slices.h"
 
 #define FLIPS 64u
-#define RENDER_SLICE_NS UINT64_C(100000)
 
 struct output {
 	struct output_params params;
@@ -257,6 +255,21 @@ static bool read_mailbox(struct output *output)
 	return go_on;
 }
 
+static int start_tee(struct output *output, struct error *error)
+{
+	const struct settings *settings = &output->settings;
+	const struct tee_params params = {
+		.path = settings->tee,
+		.log = output->params.log,
+		.refresh_numerator = settings->refresh_numerator,
+		.refresh_denominator = settings->refresh_denominator,
+	};
+	if (!*settings->tee)
+		return 0;
+	output->render.tee = tee_create(&params, error);
+	return output->render.tee ? 0 : -EIO;
+}
+
 static int start(struct output *output)
 {
 	output->render = (struct render){
@@ -270,7 +283,7 @@ static int start(struct output *output)
 	governor_init(&output->render.governor, output->params.settings->governor == 0, output->params.settings->level);
 	output->stats.governor = output->render.governor;
 	struct error error = {""};
-	const int result = draw_make_engine(&output->render, &error);
+	const int result = start_tee(output, &error) < 0 ? -EIO : draw_make_engine(&output->render, &error);
 	pthread_mutex_lock(&output->lock);
 	output->started = true;
 	output->start_result = result;
@@ -280,33 +293,11 @@ static int start(struct output *output)
 	return result;
 }
 
-/* As the kernel has it; the C library has no name for it yet. */
-struct scheduling {
-	uint32_t size, policy;
-	uint64_t flags;
-	int32_t nice;
-	uint32_t priority;
-	uint64_t runtime_ns, deadline_ns, period_ns;
-};
-
-/*
- * Short slices for this thread, and for those that a software renderer starts
- * from it: no larger share, but let in at once when it wakes (Linux 6.12).
- * Otherwise each pass may wait 3 ms behind a busy game.
- */
-static void shorten_slices(const struct output *output)
-{
-	const struct scheduling scheduling = {
-		.size = sizeof(scheduling), .nice = getpriority(PRIO_PROCESS, (id_t)gettid()), .runtime_ns = RENDER_SLICE_NS};
-	if (syscall(SYS_sched_setattr, 0, &scheduling, 0) < 0)
-		log_debug(output->params.log, "rendering with slices of the default length (%s)", strerror(errno));
-}
-
 static void *run(void *data)
 {
 	struct output *output = data;
 	pthread_setname_np(pthread_self(), "pursuit-render");
-	shorten_slices(output);
+	slices_shorten(output->params.log);
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	if (start(output) == 0) {
 		while (read_mailbox(output)) {

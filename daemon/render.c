@@ -17,6 +17,7 @@
 
 void render_finish(struct render *render)
 {
+	tee_destroy(&render->tee);
 	engine_destroy(&render->engine);
 	view_finish(&render->view);
 	showing_finish(&render->showing);
@@ -136,6 +137,8 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 	if (!render->presenter)
 		return;
 	showing_flip(&render->showing, flip);
+	if (render->tee)
+		tee_flip(render->tee, flip);
 	if (render->lab)
 		tell_lab(render, flip);
 }

@@ -26,6 +26,7 @@
 #include "daemon/present/pacer.h"
 #include "daemon/present/presenter.h"
 #include "daemon/showing.h"
+#include "daemon/tee.h"
 #include "daemon/view.h"
 
 #define RENDER_NEVER UINT64_MAX
@@ -52,6 +53,7 @@ struct render {
 	struct showing showing;
 	struct lab *lab;     /* NULL: none */
 	struct view view;
+	struct tee *tee;       /* NULL: none */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
 	struct stats *stats; /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */

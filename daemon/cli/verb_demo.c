@@ -59,7 +59,7 @@ struct demo {
 	struct timeline timeline;
 	struct demo_score score;
 	struct task *task; /* NULL: the scene has none */
-	double task_time; /* of the score told last: it never goes back */
+	double task_time;  /* of the score told last: it never goes back */
 	unsigned method_turn;
 };
 

@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/tee.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "daemon/record/y4m.h"
+
+#define PICTURES 20u
+#define QUEUED 64u
+
+struct tee_picture {
+	uint8_t *data;          /* packed */
+	uint64_t group, serial; /* serial 0: free */
+	uint32_t queued;        /* how often it waits to be written */
+};
+
+struct tee {
+	struct tee_params params;
+	char path[512];
+	FILE *times;
+	pthread_t thread;
+	pthread_mutex_t lock; /* for all below but `video` */
+	pthread_cond_t wake;
+	bool stop, failed;
+	uint32_t width, height; /* of the first picture; 0: none yet */
+	struct tee_picture pictures[PICTURES];
+	struct {
+		uint32_t picture;
+		struct presenter_flip flip;
+	} queue[QUEUED];
+	uint32_t first, count;
+	uint64_t written, dropped, other_size;
+	struct y4m *video; /* the thread's */
+};
+
+/* ---- the thread ---- */
+
+static int write_frame(struct tee *tee, const struct tee_picture *picture, const struct presenter_flip *flip,
+					   struct error *error)
+{
+	static const char *const shown[] = {"picture", "standby", "kept"};
+	const struct y4m_params params = {.path = tee->path,
+									  .width = tee->width,
+									  .height = tee->height,
+									  .rate = (uint32_t)tee->params.refresh_numerator,
+									  .rate_scale = (uint32_t)tee->params.refresh_denominator,
+									  .chroma = 444};
+	if (!tee->video)
+		tee->video = y4m_create(&params, error);
+	if (!tee->video)
+		return -EIO;
+	const int result = y4m_frame(tee->video, picture->data, (size_t)tee->width * 4, error);
+	if (result == 0)
+		fprintf(tee->times, "%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%s,%" PRIu64 ",%s\n", flip->vblank,
+				flip->sequence, flip->target_ns, flip->flip_ns, presenter_time_source_name(flip->time_source),
+				flip->serial, shown[flip->shown]);
+	return result;
+}
+
+/* With the lock, which is given up while it writes. */
+static void write_next(struct tee *tee)
+{
+	struct tee_picture *picture = &tee->pictures[tee->queue[tee->first].picture];
+	const struct presenter_flip flip = tee->queue[tee->first].flip;
+	struct error error;
+	int result = -EIO;
+	if (!tee->failed) {
+		pthread_mutex_unlock(&tee->lock);
+		result = write_frame(tee, picture, &flip, &error);
+		if (result < 0)
+			log_error(tee->params.log, "tee: %s; nothing more is recorded", error.text);
+		pthread_mutex_lock(&tee->lock);
+	}
+	tee->failed = result < 0;
+	tee->written += result == 0;
+	tee->dropped += result < 0;
+	picture->queued--;
+	tee->first = (tee->first + 1) % QUEUED;
+	tee->count--;
+}
+
+static void *run(void *data)
+{
+	struct tee *tee = data;
+	pthread_setname_np(pthread_self(), "pursuit-tee");
+	pthread_mutex_lock(&tee->lock);
+	while (!tee->stop || tee->count > 0) {
+		if (tee->count > 0)
+			write_next(tee);
+		else
+			pthread_cond_wait(&tee->wake, &tee->lock);
+	}
+	pthread_mutex_unlock(&tee->lock);
+	return NULL;
+}
+
+/* ---- the drawing thread ---- */
+
+/* With the lock. */
+static struct tee_picture *free_picture(struct tee *tee)
+{
+	for (uint32_t i = 0; i < PICTURES; i++)
+		if (tee->pictures[i].serial == 0 && tee->pictures[i].queued == 0)
+			return &tee->pictures[i];
+	return NULL;
+}
+
+void tee_add(struct tee *tee, const struct presenter_image *image, uint64_t group, uint64_t serial)
+{
+	pthread_mutex_lock(&tee->lock);
+	if (tee->width == 0) {
+		tee->width = image->width;
+		tee->height = image->height;
+	}
+	const bool fits = image->width == tee->width && image->height == tee->height;
+	struct tee_picture *picture = fits && !tee->failed ? free_picture(tee) : NULL;
+	tee->other_size += !fits;
+	pthread_mutex_unlock(&tee->lock);
+	/* A free picture is nobody else's until it has a serial. */
+	const size_t row = (size_t)image->width * 4;
+	if (picture && !picture->data)
+		picture->data = malloc(row * image->height);
+	if (!picture || !picture->data)
+		return;
+	for (uint32_t y = 0; y < image->height; y++)
+		memcpy(picture->data + y * row, image->data + y * image->stride, row);
+	pthread_mutex_lock(&tee->lock);
+	picture->group = group;
+	picture->serial = serial;
+	pthread_mutex_unlock(&tee->lock);
+}
+
+void tee_flip(struct tee *tee, const struct presenter_flip *flip)
+{
+	if (flip->serial == 0)
+		return;
+	pthread_mutex_lock(&tee->lock);
+	uint32_t found = PICTURES;
+	for (uint32_t i = 0; i < PICTURES; i++) {
+		if (tee->pictures[i].serial == flip->serial)
+			found = i;
+		else if (tee->pictures[i].group < flip->group)
+			tee->pictures[i].serial = 0; /* of a real frame that is over */
+	}
+	if (found < PICTURES && tee->count < QUEUED) {
+		const uint32_t last = (tee->first + tee->count++) % QUEUED;
+		tee->queue[last].picture = found;
+		tee->queue[last].flip = *flip;
+		tee->pictures[found].queued++;
+		pthread_cond_signal(&tee->wake);
+	} else {
+		tee->dropped++;
+	}
+	pthread_mutex_unlock(&tee->lock);
+}
+
+/* ---- life ---- */
+
+struct tee *tee_create(const struct tee_params *params, struct error *error)
+{
+	struct tee *tee = calloc(1, sizeof(*tee));
+	char times[sizeof(tee->path) + 8];
+	if (!tee) {
+		error_set(error, -ENOMEM, "tee: out of memory");
+		return NULL;
+	}
+	tee->params = *params;
+	snprintf(tee->path, sizeof(tee->path), "%s", params->path);
+	snprintf(times, sizeof(times), "%s.csv", tee->path);
+	tee->times = fopen(times, "we");
+	if (!tee->times) {
+		error_set(error, -errno, "tee: %s: %s", times, strerror(errno));
+		free(tee);
+		return NULL;
+	}
+	fprintf(tee->times, "vblank,sequence,target_ns,flip_ns,time_source,picture,shown\n");
+	pthread_mutex_init(&tee->lock, NULL);
+	pthread_cond_init(&tee->wake, NULL);
+	const int result = pthread_create(&tee->thread, NULL, run, tee);
+	if (result == 0)
+		return tee;
+	error_set(error, -result, "tee: cannot start a thread: %s", strerror(result));
+	fclose(tee->times);
+	pthread_cond_destroy(&tee->wake);
+	pthread_mutex_destroy(&tee->lock);
+	free(tee);
+	return NULL;
+}
+
+static void close_files(struct tee *tee)
+{
+	struct error error = {""};
+	if (y4m_destroy(&tee->video, &error) < 0)
+		log_error(tee->params.log, "tee: %s", error.text);
+	const bool wrong = ferror(tee->times) != 0;
+	if (fclose(tee->times) != 0 || wrong)
+		log_error(tee->params.log, "tee: %s.csv was not written whole", tee->path);
+	log_info(tee->params.log,
+			 "tee: %" PRIu64 " frames in %s, %" PRIu64 " dropped, %" PRIu64 " pictures of another size", tee->written,
+			 tee->path, tee->dropped, tee->other_size);
+}
+
+void tee_destroy(struct tee **tee)
+{
+	struct tee *self = *tee;
+	*tee = NULL;
+	if (!self)
+		return;
+	pthread_mutex_lock(&self->lock);
+	self->stop = true;
+	pthread_cond_signal(&self->wake);
+	pthread_mutex_unlock(&self->lock);
+	pthread_join(self->thread, NULL);
+	close_files(self);
+	for (uint32_t i = 0; i < PICTURES; i++)
+		free(self->pictures[i].data);
+	pthread_cond_destroy(&self->wake);
+	pthread_mutex_destroy(&self->lock);
+	free(self);
+}

@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Records what is shown, whatever presents it: each displayed frame once a
+ * vblank into a YUV4MPEG2 file, and beside it, in FILE.csv, which vblank it was
+ * and when. A thread writes; where it does not keep up, frames are dropped and
+ * counted, presentation never waits.
+ */
+#ifndef PURSUIT_TEE_H
+#define PURSUIT_TEE_H
+
+#include "daemon/error.h"
+#include "daemon/log.h"
+#include "daemon/present/presenter.h"
+
+struct tee;
+
+struct tee_params {
+	const char *path;
+	const struct log *log;
+	uint64_t refresh_numerator; /* of the video */
+	uint64_t refresh_denominator;
+};
+
+/* Opens both files. NULL with a sentence. */
+struct tee *tee_create(const struct tee_params *params, struct error *error);
+/* Writes what is waiting, closes, says in the log what was written and what was not. NULL accepted. */
+void tee_destroy(struct tee **tee);
+
+/* The next two on one thread, that which draws: one copy of the picture. */
+
+/* A picture that was given to the presenter and may be shown. */
+void tee_add(struct tee *tee, const struct presenter_image *image, uint64_t group, uint64_t serial);
+/* A vblank is over. */
+void tee_flip(struct tee *tee, const struct presenter_flip *flip);
+
+#endif
