@@ -202,6 +202,31 @@ int schedule_play(struct schedule *schedule, const struct recorded_frames *frame
 	return 0;
 }
 
+static uint64_t time_of(const struct recorded_frames *frames, const struct beginning *beginning)
+{
+	return frames->frames[beginning->frame].time_ns;
+}
+
+static uint64_t between(uint64_t from, uint64_t to, double share)
+{
+	const double clamped = share > 0.0 ? share < 1.0 ? share : 1.0 : 0.0;
+	return from + (uint64_t)(clamped * (double)(to - from) + 0.5);
+}
+
+void schedule_delay(struct schedule *schedule, const struct recorded_frames *frames, struct arg_rate refresh)
+{
+	const uint64_t tolerance_ns = UINT64_C(1000000000) * refresh.denominator / refresh.numerator / TOLERANCE_PART;
+	for (uint32_t b = 0; b < schedule->beginning_count; b++) {
+		const struct beginning *now = &schedule->beginnings[b];
+		const struct beginning *before = b ? now - 1 : now;
+		for (uint32_t i = 0; i < now->showing_count; i++) {
+			struct showing *showing = &schedule->showings[now->first_showing + i];
+			showing->moment_ns = between(time_of(frames, before), time_of(frames, now), showing->phase);
+			showing->truth = b ? recorded_frames_find(frames, showing->moment_ns, tolerance_ns) : -1;
+		}
+	}
+}
+
 /* ---- each frame predicts the next ---- */
 
 int schedule_predict(struct schedule *schedule, const struct recorded_frames *frames,

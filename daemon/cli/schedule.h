@@ -77,7 +77,7 @@ struct schedule_params {
 	uint32_t every; /* only each such frame is real; 1: all */
 	struct arg_rate refresh;
 	uint32_t level; /* of the governor: which in-betweens the showing before stays for */
-	bool numbered; /* predictions: a recorded frame's number is its id - 1 + number_offset; else its index */
+	bool numbered;  /* predictions: a recorded frame's number is its id - 1 + number_offset; else its index */
 	uint64_t number_offset;
 };
 
@@ -87,6 +87,12 @@ int schedule_play(struct schedule *schedule, const struct recorded_frames *frame
 int schedule_predict(struct schedule *schedule, const struct recorded_frames *frames,
 					 const struct schedule_params *params, struct error *error);
 void schedule_finish(struct schedule *schedule);
+
+/*
+ * For a method that shows each real frame when the next one is begun: moments, and the truth within a twentieth of a
+ * refresh period, become those of what it shows. Nothing is known of the first real frame. After schedule_play().
+ */
+void schedule_delay(struct schedule *schedule, const struct recorded_frames *frames, struct arg_rate refresh);
 
 /* For those who make their own. -ENOMEM with a sentence. */
 int schedule_add_beginning(struct schedule *schedule, const struct beginning *beginning, struct error *error);

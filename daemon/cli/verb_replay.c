@@ -190,6 +190,15 @@ static void find_numbering(const struct replay *replay, struct schedule_params *
 	params->numbered = params->number_offset <= PATTERN_MAX_NUMBER;
 }
 
+/* Does the method show a real frame only when the next one is there? */
+static bool is_late(const char *method)
+{
+	for (const struct engine_method_info *info = engine_methods(); info->name; info++)
+		if (strcmp(info->name, method) == 0)
+			return info->lag > 0;
+	return false;
+}
+
 static int make_schedule(struct replay *replay, struct error *error)
 {
 	struct schedule_params params = {
@@ -202,7 +211,10 @@ static int make_schedule(struct replay *replay, struct error *error)
 		return schedule_predict(&replay->schedule, &replay->frames, &params, error);
 	if (!params.refresh.numerator && !(has_truth(replay) && recorded_frames_rate(&replay->frames, &params.refresh)))
 		params.refresh = (struct arg_rate){120, 1};
-	return schedule_play(&replay->schedule, &replay->frames, &params, error);
+	int result = schedule_play(&replay->schedule, &replay->frames, &params, error);
+	if (result == 0 && is_late(replay->options->settings.method))
+		schedule_delay(&replay->schedule, &replay->frames, params.refresh);
+	return result;
 }
 
 static int start_engines(struct replay *replay, struct error *error)

@@ -83,6 +83,25 @@ static void test_every_third_has_truth(void)
 }
 
 /* 90 Hz from 60: real frames fall on each second and third half vblank; every real frame is shown. */
+/* A method that is one real frame late is compared with what it then depicts. */
+static void test_delay(void)
+{
+	struct fixture fixture;
+	make_frames(&fixture, 12, 120);
+	CHECK_INT(play(&fixture, 3, 120), 0);
+	schedule_delay(&fixture.schedule, &fixture.recorded, (struct arg_rate){120, 1});
+	for (uint32_t b = 0; b < fixture.schedule.beginning_count; b++) {
+		const struct beginning *beginning = &fixture.schedule.beginnings[b];
+		for (uint32_t i = 0; i < beginning->showing_count; i++) {
+			const struct showing *showing = &fixture.schedule.showings[beginning->first_showing + i];
+			CHECK_INT(showing->truth, b ? (int64_t)(beginning->frame - 3 + i) : -1);
+			if (b)
+				CHECK_NEAR(showing->moment_ns, fixture.frames[beginning->frame - 3 + i].time_ns, 2.0);
+		}
+	}
+	schedule_finish(&fixture.schedule);
+}
+
 static void test_uneven_rates(void)
 {
 	struct fixture f;
@@ -204,6 +223,7 @@ int main(void)
 {
 	RUN(test_double_rate);
 	RUN(test_every_third_has_truth);
+	RUN(test_delay);
 	RUN(test_uneven_rates);
 	RUN(test_display_slower_than_stream);
 	RUN(test_long_pause_is_skipped);
