@@ -13,6 +13,17 @@
 #define POSITION_TOLERANCE 1e-3f
 #define DEPTH_TOLERANCE 2e-4f
 
+/* Of numbers; what the library has for them is a call that looks for NaN. */
+static inline float larger(float a, float b)
+{
+	return a > b ? a : b;
+}
+
+static inline float lesser(float a, float b)
+{
+	return a < b ? a : b;
+}
+
 /* A block's corners and the way it is split. */
 struct block {
 	const struct plan_vertex *v00, *v10, *v01, *v11;
@@ -41,13 +52,13 @@ static bool passes_by(const struct block *block, const struct plan_vertex *verte
 {
 	float w00, w10, w01, w11;
 	if (block->falling) {
-		w00 = 1.0f - fmaxf(s, t);
-		w11 = fminf(s, t);
-		w10 = fmaxf(s - t, 0.0f);
-		w01 = fmaxf(t - s, 0.0f);
+		w00 = 1.0f - larger(s, t);
+		w11 = lesser(s, t);
+		w10 = larger(s - t, 0.0f);
+		w01 = larger(t - s, 0.0f);
 	} else {
-		w00 = fmaxf(1.0f - s - t, 0.0f);
-		w11 = fmaxf(s + t - 1.0f, 0.0f);
+		w00 = larger(1.0f - s - t, 0.0f);
+		w11 = larger(s + t - 1.0f, 0.0f);
 		w10 = s - w11;
 		w01 = t - w11;
 	}
@@ -57,8 +68,8 @@ static bool passes_by(const struct block *block, const struct plan_vertex *verte
 	float ux = w00 * a->ux + w10 * b->ux + w01 * c->ux + w11 * d->ux - vertex->ux;
 	float uy = w00 * a->uy + w10 * b->uy + w01 * c->uy + w11 * d->uy - vertex->uy;
 	float z = w00 * a->z + w10 * b->z + w01 * c->z + w11 * d->z - vertex->z;
-	return fmaxf(fabsf(x), fabsf(y)) <= POSITION_TOLERANCE && fmaxf(fabsf(ux), fabsf(uy)) <= tolerance->displacement &&
-		   fabsf(z) <= tolerance->depth;
+	return larger(fabsf(x), fabsf(y)) <= POSITION_TOLERANCE &&
+		   larger(fabsf(ux), fabsf(uy)) <= tolerance->displacement && fabsf(z) <= tolerance->depth;
 }
 
 static bool is_flat(const struct plan *plan, const struct merge_leaf *leaf, const struct tolerance *tolerance)

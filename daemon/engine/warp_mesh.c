@@ -20,6 +20,17 @@
 #define LEVELS_TILE 16u
 #define FOLD_TILE 32u
 
+/* Of numbers; what the library has for them is a call that looks for NaN. */
+static inline float larger(float a, float b)
+{
+	return a > b ? a : b;
+}
+
+static inline float lesser(float a, float b)
+{
+	return a < b ? a : b;
+}
+
 enum kind {
 	KIND_PLAIN = 0,
 	KIND_TORN = 1,
@@ -70,10 +81,10 @@ static struct box triangle_box(const struct plan_vertex *vertices, const uint32_
 	for (int i = 0; i < 3; i++) {
 		const struct plan_vertex *vertex = &vertices[index[i]];
 		float x = vertex->x + phase * vertex->ux, y = vertex->y + phase * vertex->uy;
-		box.left = fminf(box.left, x - margin);
-		box.right = fmaxf(box.right, x + margin);
-		box.top = fminf(box.top, y - margin);
-		box.bottom = fmaxf(box.bottom, y + margin);
+		box.left = lesser(box.left, x - margin);
+		box.right = larger(box.right, x + margin);
+		box.top = lesser(box.top, y - margin);
+		box.bottom = larger(box.bottom, y + margin);
 	}
 	return box;
 }

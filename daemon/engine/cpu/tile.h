@@ -319,6 +319,23 @@ static bool shift_tile(const struct scene *scene, const struct area *area, float
 	return true;
 }
 
+/* Asks for what the tile will show if it all moves alike, so that it comes while the triangles are worked on. */
+static void expect_tile(const struct scene *scene, const struct area *area, float ux, float uy)
+{
+	const struct canvas *picture = scene->picture;
+	const float limit = 16384.0f;
+	float by_x = -scene->phase * ux, by_y = -scene->phase * uy;
+	if (!(fabsf(by_x) < limit) || !(fabsf(by_y) < limit))
+		return;
+	int32_t left = (int32_t)area->left + (int32_t)by_x, top = (int32_t)area->top + (int32_t)by_y;
+	int32_t right = left + (int32_t)area->width, bottom = top + (int32_t)area->height;
+	left = left > 0 ? left : 0;
+	right = right < (int32_t)picture->width ? right : (int32_t)picture->width;
+	for (int32_t y = top > 0 ? top : 0; y <= bottom && y < (int32_t)picture->height; y++)
+		for (int32_t x = left; x < right + 16; x += 16)
+			__builtin_prefetch(canvas_row(picture, y) + 4 * (ptrdiff_t)x);
+}
+
 /* Fades torn pixels of a row to L. */
 static void tear_row(const struct scene *scene, struct scene_scratch *scratch, uint32_t at, uint32_t count,
 					 uint8_t *out)
@@ -367,6 +384,7 @@ static void draw_tile(const struct scene *scene, uint32_t tile, struct scene_scr
 		scratch->uncovered += bin.count == 0 ? area.width * area.height : 0;
 		return;
 	}
+	expect_tile(scene, &area, ux, uy);
 	prepare(scene, scratch, &bin, &torn);
 	for (uint32_t i = 0; i < bin.count; i++)
 		put_triangle(scene, scratch, bin.triangles[i], &place);
