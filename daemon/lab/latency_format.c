@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daemon/present/presenter.h"
-
 static const struct {
 	const char *name, *meaning;
 } columns[] = {

@@ -21,6 +21,7 @@
 #include <stdio.h>
 
 #include "daemon/lab/points.h"
+#include "daemon/present/presenter.h"
 
 #define LATENCY_MAGIC "PURSLAT1"
 #define LATENCY_BLOCK_MAGIC "PLBK"
