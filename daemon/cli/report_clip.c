@@ -9,11 +9,6 @@
 
 #define ALIGNMENT 64u
 
-static void *aligned(size_t bytes)
-{
-	return aligned_alloc(ALIGNMENT, (bytes + ALIGNMENT) / ALIGNMENT * ALIGNMENT);
-}
-
 struct clip *clip_create(uint32_t width, uint32_t height, uint32_t reals, uint32_t shown, uint32_t sites,
 						 struct error *error)
 {
@@ -67,7 +62,7 @@ void clip_destroy(struct clip **clip)
 
 void *clip_plane(const struct clip *clip, size_t bytes, struct error *error)
 {
-	void *plane = aligned(bytes * clip->width * clip->height);
+	void *plane = malloc(bytes * clip->width * clip->height);
 	if (!plane)
 		error_set(error, -ENOMEM, "out of memory for pictures of %ux%u", clip->width, clip->height);
 	return plane;
@@ -79,13 +74,14 @@ int clip_keep_frame(struct clip_real *real, const struct frame *frame, struct er
 	for (uint32_t i = 0; i < frame->header.plane_count; i++)
 		bytes += (frame->header.planes[i].size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 	real->frame = *frame;
-	real->planes = aligned(bytes);
+	real->planes = malloc(bytes + ALIGNMENT); /* aligned_alloc() fragments the heap of glibc before 2.38 */
 	if (!real->planes)
 		return error_set(error, -ENOMEM, "out of memory for a frame");
+	uint8_t *start = real->planes + (ALIGNMENT - (uintptr_t)real->planes % ALIGNMENT) % ALIGNMENT;
 	bytes = 0;
 	for (uint32_t i = 0; i < frame->header.plane_count; i++) {
-		memcpy(real->planes + bytes, frame->planes[i], frame->header.planes[i].size);
-		real->frame.planes[i] = real->planes + bytes;
+		memcpy(start + bytes, frame->planes[i], frame->header.planes[i].size);
+		real->frame.planes[i] = start + bytes;
 		bytes += (frame->header.planes[i].size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 	}
 	return 0;

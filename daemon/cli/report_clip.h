@@ -60,7 +60,7 @@ struct clip *clip_create(uint32_t width, uint32_t height, uint32_t reals, uint32
 						 struct error *error);
 int clip_keep_frame(struct clip_real *real, const struct frame *frame, struct error *error);
 
-/* A picture's worth of `bytes` a pixel, 64-byte aligned; NULL with a sentence. */
+/* A picture's worth of `bytes` a pixel; NULL with a sentence. */
 void *clip_plane(const struct clip *clip, size_t bytes, struct error *error);
 
 struct clip_scene_params {

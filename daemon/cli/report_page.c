@@ -155,7 +155,7 @@ static void put_camera(const struct report *report, FILE *out, uint32_t index)
 	const struct report_gallery *gallery = &report->galleries[index];
 	const struct report_work *work = gallery->work;
 	char name[4 * REPORT_NAME], caption[160];
-	if (!gallery->truth)
+	if (!gallery->truth || work->n != report->works[0].n)
 		return;
 	fprintf(out,
 			"<p>Through the pursuit camera, at %.2f s; motion here is %.0f pixels a second on average.</p>\n<div>\n",
@@ -194,7 +194,7 @@ static void put_work(const struct report *report, FILE *out, uint32_t index)
 	report_plot_name(name, "time", report, index);
 	put_file(report, out, "plots", name, ".svg", "error over time", "");
 	put_camera(report, out, index);
-	if (*gallery->contact) {
+	if (*gallery->contact && (work->recording || work->n == report->works[0].n)) {
 		fputs("<details><summary>Contact sheet: the last scored in-between of each method, enlarged</summary>\n", out);
 		put_file(report, out, "pictures", gallery->contact, "", "contact sheet", "");
 		fputs("</details>\n", out);

@@ -136,7 +136,7 @@ static void write_rendered(const struct report *report, const struct report_work
 	const double error = row    ? score_value(&row->score, SCORE_PERCEIVED_ERROR)
 						 : work ? (double)NAN
 								: report_mean(report, last, SCORE_PERCEIVED_ERROR);
-	if (!last->engine && isfinite(error))
+	if (!last->engine && error > 0.0)
 		fprintf(script, ", \\\n %g with lines dashtype 2 linecolor '#555555' title 'every frame rendered'", error);
 }
 
@@ -145,11 +145,15 @@ static bool plot_pareto(const struct report *report, const struct report_work *w
 {
 	struct plot plot;
 	struct report_point *points = calloc(report->variant_count + 1u, sizeof(*points));
-	uint32_t count = points ? report_points(report, work, points) : 0;
+	uint32_t all = points ? report_points(report, work, points) : 0, count = 0;
 	bool drawn = true;
+	for (uint32_t i = 0; i < all; i++) { /* the axes are logarithmic: what has no error has no place */
+		if (points[i].error > 0.0 && points[i].ms_low > 0.0)
+			points[count++] = points[i];
+	}
 	if (count > 0 && plot_open(&plot, report, name, work ? 560 : 900, work ? 380 : 520)) {
-		fprintf(plot.script, "set title '%s' noenhanced\nset logscale x\nset xlabel 'engine, ms for each displayed "
-							 "frame (median and middle half)'\nset ylabel '%s'\nset yrange [0:*]\n",
+		fprintf(plot.script, "set title '%s' noenhanced\nset logscale xy\nset xlabel 'engine, ms a displayed frame "
+							 "(median, middle half)'\nset ylabel '%s'\nset yrange [*:*]\nset key font ',11'\n",
 				title,
 				work && work->recording ? "root mean square error, code values" : "perceived error, code values");
 		write_front(plot.script, points, count);
@@ -184,7 +188,8 @@ static bool plot_time(const struct report *report, const struct report_work *wor
 	if (!plot_open(&plot, report, name, 560, 380))
 		return false;
 	fprintf(plot.script,
-			"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene, s'\nset ylabel 'PSNR of in-betweens, dB'\n",
+			"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene, s'\nset ylabel 'PSNR of in-betweens, dB'\n"
+			"set key font ',11'\n",
 			work->name, work->n);
 	for (uint32_t i = 0; i < report->row_count; i++) {
 		if (report->rows[i].work == work && report->rows[i].variant->plain && report->rows[i].variant->engine)
@@ -212,7 +217,7 @@ static bool plot_speed(const struct report *report)
 		return false;
 	fprintf(plot.script, "set title 'Perceived error against the speed of motion, all scenes, N = %u'\n"
 						 "set xlabel 'speed of the true motion, pixels a second (upper end of each class)'\n"
-						 "set ylabel 'perceived error, code values'\nset logscale x 2\nset yrange [0:*]\n",
+						 "set ylabel 'perceived error, code values'\nset logscale x 2\nset logscale y\n",
 			report->works[0].n);
 	const char *separator = "plot ";
 	for (int pass = 0; pass < 2; pass++) {
@@ -224,7 +229,7 @@ static bool plot_speed(const struct report *report)
 			if (pass == 0) {
 				fprintf(plot.script, "$s%u << EOD\n", v);
 				for (uint32_t bin = 0; bin < CAMERA_SPEEDS; bin++) {
-					if (bins[bin].count > 2000)
+					if (bins[bin].count > 2000 && bins[bin].sum > 0.0)
 						fprintf(plot.script, "%g %g\n", 7.5 * (1u << bin), squared_error_root(&bins[bin]));
 				}
 				fprintf(plot.script, "EOD\n");
