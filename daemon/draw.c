@@ -366,6 +366,13 @@ static void govern(struct render *render, uint64_t now_ns, uint64_t vblank)
 	render->stats->governor = render->governor;
 }
 
+/* A frame that was taken and cannot be shown. In a pause no flip of a later one would ever answer for it. */
+static void give_up(struct render *render)
+{
+	if (render->paused || render->pause_vblanks > 0)
+		showing_close_frames(&render->showing, render->group + 1);
+}
+
 void draw_real(struct render *render, uint64_t now_ns)
 {
 	struct presenter_image image;
@@ -384,11 +391,14 @@ void draw_real(struct render *render, uint64_t now_ns)
 	if (render->pause_vblanks > 0)
 		render_plan_pause_until(render, vblank);
 	govern(render, now_ns, vblank);
-	if (!begin(render, &decision) || draw(render, ENGINE_SHOW_REAL, decision.phase, &image) < 0)
+	if (!begin(render, &decision) || draw(render, ENGINE_SHOW_REAL, decision.phase, &image) < 0) {
+		give_up(render);
 		return;
+	}
 	add_cost(render, &render->real_cost, now_ns);
 	if (queue_real(render, &image, &decision, &vblank) < 0) {
 		render->presenter->impl->release(render->presenter, &image);
+		give_up(render);
 		return;
 	}
 	render->engine_delay_ns = 0;
