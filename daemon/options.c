@@ -105,7 +105,7 @@ static const struct option_row rows[] = {
 	TEXT(lab.gpio_chip, "gpio-chip", OPTION_LAB, "",
 		 "GPIO chip by path, name or label; empty: the first that has all lines that are given by name."),
 	TEXT(lab.gpio_line, "gpio-line", OPTION_LAB, "",
-		 "Marker lines by offset or name, separated by commas, the lowest first; empty: no marker."),
+		 "Marker lines by name, or by offset with gpio-chip, separated by commas, the lowest first; empty: no marker."),
 	CHOICE(lab.pattern, "gpio-pattern", OPTION_LAB, "toggle", pattern_choices,
 		   "At each flip: toggle, pulse; pulse-real at real frames; level-real high while a real frame is shown; "
 		   "three-lines pulses flip, real, in-between; counter the vblank in binary; sequence as the patch."),

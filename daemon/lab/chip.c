@@ -34,15 +34,19 @@ bool chip_is_offset(const char *name, uint32_t *offset)
 	return *end == '\0' && errno == 0 && number <= 65535;
 }
 
-int chip_count_lines(const char *list, const char *option, struct error *error)
+int chip_count_lines(const char *chip, const char *list, const char *option, struct error *error)
 {
 	char names[CHIP_LINES][CHIP_NAME_BYTES];
 	const char *rest = list;
-	int count = 0, taken;
+	uint32_t offset;
+	int count = 0, taken = 0;
 	while (count < (int)CHIP_LINES && (taken = chip_next_line(&rest, names[count])) == 1) {
 		for (int i = 0; i < count; i++)
 			if (strcmp(names[i], names[count]) == 0)
 				return error_set(error, -EINVAL, "%s: %s is listed twice", option, names[i]);
+		if (!*chip && chip_is_offset(names[count], &offset))
+			return error_set(error, -EINVAL, "%s: %s is an offset: say of which chip with --gpio-chip", option,
+							 names[count]);
 		count++;
 	}
 	if (count == (int)CHIP_LINES && *rest)

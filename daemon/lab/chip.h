@@ -21,7 +21,7 @@
 #define CHIP_NAME_BYTES 32u
 
 struct chip_params {
-	const char *chip;  /* path, name ("gpiochip0") or label; "": the first that has all lines by name, else the first */
+	const char *chip;  /* path, name ("gpiochip0") or label; "": the first that has all lines, which must be names */
 	const char *lines; /* offsets or names, separated by commas */
 	const char *option; /* what the lines' list is called in messages: "gpio-line" */
 	bool input;        /* one line, both edges */
@@ -70,8 +70,11 @@ int chip_read(struct chip *chip, struct chip_edge *edges, uint32_t most);
 int chip_next_line(const char **list, char name[CHIP_NAME_BYTES]);
 /* A name that is a number is an offset. */
 bool chip_is_offset(const char *name, uint32_t *offset);
-/* How many lines a list names, or -EINVAL with a sentence. */
-int chip_count_lines(const char *list, const char *option, struct error *error);
+/*
+ * How many lines a list names, or -EINVAL with a sentence. Offsets without a chip are refused: line 17 of some chip
+ * or other may be the power supply.
+ */
+int chip_count_lines(const char *chip, const char *list, const char *option, struct error *error);
 /* The sentence for an errno of open(2) on a chip. */
 int chip_explain_open(const char *chip, int code, struct error *error);
 

@@ -152,7 +152,7 @@ static int request(struct chip *chip, const struct chip_params *params, struct e
 
 struct chip *chip_open(const struct chip_params *params, struct error *error)
 {
-	if (chip_count_lines(params->lines, params->option, error) < 0)
+	if (chip_count_lines(params->chip, params->lines, params->option, error) < 0)
 		return NULL;
 	struct chip *chip = calloc(1, sizeof(*chip));
 	if (!chip) {

@@ -199,7 +199,7 @@ static int request(struct chip *chip, struct gpiod_chip *device, const struct ch
 
 struct chip *chip_open(const struct chip_params *params, struct error *error)
 {
-	if (chip_count_lines(params->lines, params->option, error) < 0)
+	if (chip_count_lines(params->chip, params->lines, params->option, error) < 0)
 		return NULL;
 	struct chip *chip = calloc(1, sizeof(*chip));
 	if (chip && params->input)

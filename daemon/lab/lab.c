@@ -25,7 +25,7 @@ static int check_pattern(const struct lab_settings *settings, struct error *erro
 	const uint32_t wanted = pattern_lines((enum pattern_kind)settings->pattern);
 	if (!*settings->gpio_line)
 		return 0;
-	const int count = chip_count_lines(settings->gpio_line, "gpio-line", error);
+	const int count = chip_count_lines(settings->gpio_chip, settings->gpio_line, "gpio-line", error);
 	if (count < 0)
 		return count;
 	if (wanted != 0 && (uint32_t)count != wanted)
@@ -34,9 +34,9 @@ static int check_pattern(const struct lab_settings *settings, struct error *erro
 	return 0;
 }
 
-static int check_single(const char *lines, const char *option, struct error *error)
+static int check_single(const char *chip, const char *lines, const char *option, struct error *error)
 {
-	const int count = *lines ? chip_count_lines(lines, option, error) : 1;
+	const int count = *lines ? chip_count_lines(chip, lines, option, error) : 1;
 	if (count < 0)
 		return count;
 	return count == 1 ? 0 : error_set(error, -EINVAL, "%s: \"%.64s\": one line is wanted", option, lines);
@@ -44,9 +44,10 @@ static int check_single(const char *lines, const char *option, struct error *err
 
 static int check(const struct lab_settings *settings, struct error *error)
 {
-	if (check_pattern(settings, error) < 0 || check_single(settings->strobe_line, "strobe-line", error) < 0 ||
-		check_single(settings->photodiode_line, "photodiode-line", error) < 0 ||
-		check_single(settings->trigger_line, "trigger-line", error) < 0)
+	if (check_pattern(settings, error) < 0 ||
+		check_single(settings->gpio_chip, settings->strobe_line, "strobe-line", error) < 0 ||
+		check_single(settings->gpio_chip, settings->photodiode_line, "photodiode-line", error) < 0 ||
+		check_single(settings->gpio_chip, settings->trigger_line, "trigger-line", error) < 0)
 		return -EINVAL;
 	if (settings->strobe_duty > settings->strobe_limit)
 		return error_set(error, -EINVAL, "strobe-duty: %g is above the strobe-limit, %g", settings->strobe_duty,

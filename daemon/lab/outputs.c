@@ -12,7 +12,7 @@ static void set_up_marker(struct lab *lab)
 	const struct lab_settings *settings = lab->settings;
 	struct error error;
 	const bool wanted = *settings->gpio_line != '\0';
-	const int count = wanted ? chip_count_lines(settings->gpio_line, "gpio-line", &error) : 1;
+	const int count = wanted ? chip_count_lines(settings->gpio_chip, settings->gpio_line, "gpio-line", &error) : 1;
 	const uint32_t all = (1u << (count > 0 ? count : 1)) - 1;
 	lab->levels = settings->initial_level ? all : 0;
 	lab->pattern = (struct pattern){

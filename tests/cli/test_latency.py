@@ -94,6 +94,7 @@ class Latency(Case):
         self.must("latency", path, path, path, status=2)
         self.must("latency", "--loopback", "1", status=1)
         self.must("latency", "--loopback", "1:2", path, status=2)
+        self.assertIn("say of which chip", self.must("latency", "--loopback", "1:2", status=1).stderr)
 
 
 class Live(Case):

@@ -140,15 +140,15 @@ def check_patterns():
         late = [mark for mark in marks[:240] if min(abs(mark - vblank) for vblank in vblanks) > 1000]
         check(not late, "toggle:", len(late), "edges are not at a vblank event of the kernel")
 
-    status, edges, _ = watched("--gpio-line", "17", "--gpio-pattern", "pulse", "--gpio-pulse-us", "500")
+    status, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "pulse", "--gpio-pulse-us", "500")
     check_steady(of_line(edges, 17, 1), "pulse", 1, status["flips"])
     widths = [off - on for on, off in zip(of_line(edges, 17, 1), of_line(edges, 17, 0))]
     check(all(499 <= width <= 560 for width in widths), "pulse widths", min(widths), max(widths))
 
-    _, edges, _ = watched("--gpio-line", "17", "--gpio-pattern", "pulse-real")
+    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "pulse-real")
     check_steady(of_line(edges, 17, 1), "pulse-real", 3, 80)
 
-    _, edges, _ = watched("--gpio-line", "17", "--gpio-pattern", "level-real", "--gpio-chip", "lab-chip")
+    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "level-real", "--gpio-chip", "lab-chip")
     ups, downs = of_line(edges, 17, 1), of_line(edges, 17, 0)
     check_steady(ups, "level-real up", 3, 80)
     check_steady(downs[:80], "level-real down", 3, 80)
@@ -174,9 +174,9 @@ def check_patterns():
     check(all((b - a) % 16 == 1 for a, b in zip(counted, counted[1:])), "counter counts", counted[:20])
     check_steady([time_us for time_us, _ in values][:200], "counter", 1, 200)
 
-    _, edges, _ = watched("--gpio-line", "17", "--gpio-pattern", "sequence", "--gpio-active-low", flips=600)
+    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "sequence", "--gpio-active-low", flips=600)
     check_sequence(edges)
-    _, edges, _ = watched("--gpio-line", "17", "--gpio-offset-us", "4167", "--gpio-initial", "high", "--gpio-final", "high")
+    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-offset-us", "4167", "--gpio-initial", "high", "--gpio-final", "high")
     check_steady(of_line(edges, 17)[1:240], "offset", 1, 239)
     check(read(f"{CHIP}/sim_gpio17/value").strip() in "01", "level at the end")
 
@@ -270,7 +270,7 @@ def check_busy():
     """Somebody holds the line when we come, and lets it go later."""
     holder = subprocess.Popen(["gpiomon", "gpiochip0", "17"], stdout=subprocess.DEVNULL)
     time.sleep(0.3)
-    with subprocess.Popen([RIG_LAB, "--flips", "240", "--gpio-line", "17"], stdout=subprocess.PIPE,
+    with subprocess.Popen([RIG_LAB, "--flips", "240", "--gpio-line", "MARKER"], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as lab:
         time.sleep(1)
         holder.terminate()
@@ -341,7 +341,7 @@ def check_daemon():
 def check_loopback():
     """A wire of software: what the kernel traces of the output is pulled at the input."""
     pursuit = os.path.join(os.path.dirname(RIG_LAB), "..", "..", "daemon", "cli", "pursuit")
-    result = subprocess.run([pursuit, "latency", "--loopback", "17:4", "--count", "3"], capture_output=True, text=True,
+    result = subprocess.run([pursuit, "latency", "--loopback", "MARKER:PHOTODIODE", "--count", "3"], capture_output=True, text=True,
                             check=False)
     check(result.returncode == 1 and "is there a wire" in result.stderr, "loopback: no wire:", result.stderr)
     write(f"{TRACE}/events/gpio/gpio_value/enable", "1")
