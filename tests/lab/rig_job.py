@@ -268,7 +268,7 @@ def check_errors():
 
 def check_busy():
     """Somebody holds the line when we come, and lets it go later."""
-    holder = subprocess.Popen(["gpiomon", "gpiochip0", "17"], stdout=subprocess.DEVNULL)
+    holder = subprocess.Popen([RIG_LAB, "--flips", "100000", "--gpio-line", "MARKER"], stderr=subprocess.DEVNULL)
     time.sleep(0.3)
     with subprocess.Popen([RIG_LAB, "--flips", "240", "--gpio-line", "MARKER"], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, text=True) as lab:
@@ -277,7 +277,7 @@ def check_busy():
         holder.wait()
         out, err = lab.communicate(timeout=60)
     status = json.loads(out.splitlines()[-1])
-    check("in use by gpiomon" in err, "busy: not said:", err)
+    check("in use by pursuit" in err, "busy: not said:", err)
     check(status["marker"]["there"] and status["edges"] > 20, "busy: no recovery", status)
 
 
