@@ -33,6 +33,7 @@ static void look_at_renderer(struct doctor *doctor, enum engine_context_kind kin
 void doctor_look_at_renderers(struct doctor *doctor)
 {
 	look_at_renderer(doctor, ENGINE_CONTEXT_AUTO, "auto");
+	look_at_renderer(doctor, ENGINE_CONTEXT_CPU, "cpu");
 	look_at_renderer(doctor, ENGINE_CONTEXT_EGL_SURFACELESS, "egl");
 	look_at_renderer(doctor, ENGINE_CONTEXT_OSMESA, "osmesa");
 }
