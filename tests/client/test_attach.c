@@ -177,6 +177,23 @@ static void test_header(void)
 	CHECK(header->jitter_x == 0.0f && header->flags == 0 && header->motion_interval_ns == 0);
 
 	frame = timed_acquire(stream);
+	frame->flags = PURSUIT_FLAG_DAMAGE;
+	frame->damage_count = 1;
+	frame->damage[0] = (struct pursuit_damage){1, 2, 3, 4};
+	const uint64_t before = header->frame_id;
+	timed_submit(stream, frame);
+	header = fake_take(&daemon, NULL);
+	CHECK(header->flags == PURSUIT_FRAME_DAMAGE && header->damage_since == before && header->damage_count == 1);
+	CHECK(header->damage[0].y == 2 && header->damage[0].height == 4 && header->damage[1].width == 0);
+	frame = timed_acquire(stream);
+	CHECK(frame->damage_count == 0);
+	frame->flags = PURSUIT_FLAG_DAMAGE;
+	frame->damage_count = 9;
+	timed_submit(stream, frame);
+	header = fake_take(&daemon, NULL);
+	CHECK(header->flags == 0 && header->damage_since == 0 && header->damage_count == 0);
+
+	frame = timed_acquire(stream);
 	timed_submit(stream, frame);
 	header = fake_take(&daemon, NULL);
 	CHECK(header->time_ns > 5300 && header->time_ns <= header->submit_ns);

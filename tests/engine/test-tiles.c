@@ -12,6 +12,26 @@
 #include "daemon/engine/cpu/executor_cpu.h"
 #include "tests/engine/picture.h"
 
+static atomic_uint allocations;
+
+/* The linker sends the engine here (--wrap). */
+void *__real_malloc(size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void *__wrap_malloc(size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+
+void *__wrap_malloc(size_t size)
+{
+	atomic_fetch_add(&allocations, 1);
+	return __real_malloc(size);
+}
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+	atomic_fetch_add(&allocations, 1);
+	return __real_aligned_alloc(alignment, size);
+}
+
 struct counter {
 	atomic_uint items[1000];
 	atomic_uint threads[POOL_MAX_THREADS];
@@ -173,6 +193,25 @@ static void test_equal_bits(void)
 	engine_destroy(&plain);
 }
 
+static void test_no_allocation_in_the_steady_state(void)
+{
+	struct engine *engine = make(NULL, 2);
+	uint8_t *out = calloc(6, (size_t)4 * 400 * 300);
+	for (int round = 0; round < 3; round++)
+		for (int i = 0; i < 6; i++) {
+			struct picture picture;
+			picture_init(&picture, 400, 300, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
+			picture_draw_layers(&picture, i);
+			unsigned before = atomic_load(&allocations);
+			show_all(engine, &picture, out);
+			CHECK(round == 0 || atomic_load(&allocations) == before);
+			picture_finish(&picture);
+		}
+	CHECK(atomic_load(&allocations) > 0);
+	free(out);
+	engine_destroy(&engine);
+}
+
 static void test_refuses(void)
 {
 	struct error error = {""};
@@ -189,6 +228,7 @@ int main(void)
 	RUN(test_pool);
 	RUN(test_covered);
 	RUN(test_equal_bits);
+	RUN(test_no_allocation_in_the_steady_state);
 	RUN(test_refuses);
 	return test_result();
 }
