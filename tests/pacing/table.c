@@ -5,6 +5,7 @@
  * The table of the pacing bench: every simulated display with every simulated
  * client, 10,000 vblanks each.
  *   pacing-table [--csv | --json] [--vblanks N]
+ * --json is a table for `pursuit report --tables`.
  */
 #include <inttypes.h>
 #include <stdio.h>
@@ -42,14 +43,28 @@ static void print_csv(const char *display, const char *client, const double numb
 
 static void print_json(const char *display, const char *client, const double numbers[NUMBERS], bool first)
 {
-	printf("%s\n  {\"display\": \"%s\", \"client\": \"%s\"", first ? "" : ",", display, client);
+	printf("%s\n  [\"%s\", \"%s\"", first ? "" : ",", display, client);
 	for (size_t i = 0; i < NUMBERS; i++) {
 		if (numbers[i] < 1e300)
-			printf(i < FIRST_REAL_NUMBER ? ", \"%s\": %.0f" : ", \"%s\": %.4f", names[i + 2], numbers[i]);
+			printf(i < FIRST_REAL_NUMBER ? ", %.0f" : ", %.4f", numbers[i]);
 		else
-			printf(", \"%s\": null", names[i + 2]);
+			printf(", null");
 	}
-	printf("}");
+	printf("]");
+}
+
+static void print_json_head(void)
+{
+	printf("{\"title\": \"Pacing: simulated displays and clients\", \"columns\": [");
+	for (size_t i = 0; i < NUMBERS + 2; i++)
+		printf("%s\"%s\"", i ? ", " : "", names[i]);
+	printf("], \"rows\": [");
+}
+
+static void print_text_head(void)
+{
+	printf("display        client         real  betw   rep  doub  drop late wrong  phase "
+		   "p50 p99 most  settle  delay ms    span  vblank us\n");
 }
 
 static void print_text(const char *display, const char *client, const struct simulation_result *r)
@@ -76,10 +91,12 @@ int main(int argc, char **argv)
 	}
 	for (size_t i = 0; csv && i < NUMBERS + 2; i++)
 		printf("%s%s", i ? "," : "", names[i]);
-	printf(csv    ? "\n"
-		   : json ? "["
-				  : "display        client         real  betw   rep  doub  drop late wrong  phase "
-					"p50 p99 most  settle  delay ms    span  vblank us\n");
+	if (csv)
+		printf("\n");
+	else if (json)
+		print_json_head();
+	else
+		print_text_head();
 	for (const struct simulated_display *d = simulated_displays; d->name; d++) {
 		for (const struct simulated_client *c = simulated_clients; c->name; c++) {
 			const struct simulation simulation = {.display = *d, .client = *c, .vblanks = vblanks};
@@ -97,6 +114,6 @@ int main(int argc, char **argv)
 		}
 	}
 	if (json)
-		printf("\n]\n");
+		printf("\n]}\n");
 	return 0;
 }
