@@ -60,6 +60,13 @@ static void *scribble(void *data)
 	return NULL;
 }
 
+/* A moment's patience on a machine of several cores; then the core, if there is only one. */
+static void let_it_run(unsigned spins)
+{
+	if (spins > 20000)
+		sched_yield();
+}
+
 static void start_scribbling(struct pursuit_shm_control *control)
 {
 	static bool running;
@@ -68,8 +75,8 @@ static void start_scribbling(struct pursuit_shm_control *control)
 		running = pthread_create(&thread, NULL, scribble, NULL) == 0 && pthread_detach(thread) == 0;
 	const unsigned before = atomic_load(&scribbles);
 	atomic_store(&victim, control);
-	while (running && atomic_load(&scribbles) - before < 3)
-		sched_yield();
+	for (unsigned spins = 0; running && atomic_load(&scribbles) - before < 3; spins++)
+		let_it_run(spins);
 }
 
 static void stop_scribbling(void)
@@ -77,8 +84,8 @@ static void stop_scribbling(void)
 	if (!atomic_exchange(&victim, NULL))
 		return;
 	atomic_store(&resting, false);
-	while (!atomic_load(&resting))
-		sched_yield();
+	for (unsigned spins = 0; !atomic_load(&resting); spins++)
+		let_it_run(spins);
 }
 
 /* ---- the stream ---- */
