@@ -223,6 +223,20 @@ static void add_recording(const struct control *control, json_t *object)
 								  stats.text));
 }
 
+/* Settings of the picture that can change, as they are now. */
+static json_t *changeable_json(const struct settings *settings)
+{
+	json_t *object = json_object();
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char value[1024];
+		if (!live_can_change(row) || row->group == OPTION_DAEMON)
+			continue;
+		settings_get(settings, row->name, value, sizeof(value));
+		json_object_set_new(object, row->name, json_string(value));
+	}
+	return object;
+}
+
 char *control_status_text(struct control *control)
 {
 	struct stats *stats = malloc(sizeof(*stats)); /* a quarter of a megabyte */
@@ -254,6 +268,7 @@ char *control_status_text(struct control *control)
 	}
 	if (control->params.lab)
 		json_object_set_new(object, "lab", lab_status_json(control->params.lab));
+	json_object_set_new(object, "settings", changeable_json(control->params.settings));
 	add_recording(control, object);
 	char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(12));
 	json_decref(object);
@@ -364,16 +379,13 @@ static void on_key(struct control *control, const struct request *request)
 
 static void on_set(struct control *control, const struct request *request)
 {
-	static const char method[] = "method=", focus[] = "focus=";
+	static const char focus[] = "focus=";
 	struct error error = {""};
-	int result = -EINVAL;
+	int result;
 	if (strncmp(request->arguments, focus, strlen(focus)) == 0)
 		result = server_focus(control->server, request->arguments + strlen(focus), &error);
-	else if (strncmp(request->arguments, method, strlen(method)) == 0)
-		result = output_set_method(control->params.output, request->arguments + strlen(method), &error);
 	else
-		error_set(&error, result, "set: \"%.64s\" cannot be set while the daemon runs; there are method=NAME and focus=CLIENT",
-				  request->arguments);
+		result = live_set(control->params.live, request->arguments, &error);
 	reply(control, request, result, result < 0 ? error.text : "set");
 }
 

@@ -16,7 +16,8 @@
  *                           the frames received from now on
  *   record-stop             ends the recording; answered when it is on disk:
  *                           {frames, dropped, bytes, error}
- *   set method=NAME         the method from the next real frame on
+ *   set NAME=VALUE ...      settings by name, all or none of them (live.h); those of
+ *                           the picture from the next real frame on
  *   set focus=CLIENT        shows this client, by number or name (see status)
  *   key KEY                 as if it had been pressed in the window: one
  *                           character, or escape, f1, close
@@ -29,6 +30,7 @@
 
 #include "daemon/clock.h"
 #include "daemon/error.h"
+#include "daemon/live.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
 #include "daemon/options.h"
@@ -44,6 +46,7 @@ struct control_params {
 	const struct settings *settings;
 	struct output *output;
 	struct lab *lab; /* NULL: none */
+	struct live *live;
 };
 
 /* Starts the recording that the settings ask for. NULL with a sentence. */

@@ -328,14 +328,24 @@ static void settle_real(struct render *render, const struct pacer_decision *deci
 	give_hint(render, decision);
 }
 
-/* The level of what is begun from now on. */
-static void set_level(struct render *render)
+/* What is begun from now on is made with the settings as they are, at the governor's level. */
+static void set_params(struct render *render)
 {
 	struct engine_params params;
 	struct error error;
-	if (get_params(render, &params, &error) < 0 || engine_set_params(render->engine, &params, &error) < 0)
-		log_warning(render->log, "governor: %s", error.text);
+	int result = get_params(render, &params, &error);
+	if (result == 0 && render->engine)
+		result = engine_set_params(render->engine, &params, &error);
+	if (result < 0)
+		log_warning(render->log, "settings of the engine: %s", error.text);
 	render->between_cost = render->plain_cost = (struct cost){.count = 0};
+	render->settings_changed = false;
+}
+
+/* The level of what is begun from now on. */
+static void set_level(struct render *render)
+{
+	set_params(render);
 	log_debug(render->log, "governor: %s at a load of %.2f%s", governor_level_name(render->governor.level),
 			  render->governor.load, render->passes_through ? ", but frames pass through" : "");
 }
@@ -391,6 +401,8 @@ void draw_real(struct render *render, uint64_t now_ns)
 	if (render->pause_vblanks > 0)
 		render_plan_pause_until(render, vblank);
 	govern(render, now_ns, vblank);
+	if (render->settings_changed)
+		set_params(render);
 	if (!begin(render, &decision) || draw(render, ENGINE_SHOW_REAL, decision.phase, &image) < 0) {
 		give_up(render);
 		return;

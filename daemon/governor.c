@@ -38,6 +38,16 @@ static void change(struct governor *governor, uint32_t level, uint64_t now_ns)
 	memset(governor->late, 0, sizeof(governor->late));
 }
 
+void governor_configure(struct governor *governor, bool automatic, uint32_t level, uint64_t now_ns)
+{
+	governor->automatic = automatic;
+	governor->least = level < GOVERNOR_LEVELS ? level : GOVERNOR_LEVELS - 1;
+	governor->trying = false;
+	governor->patience_ns = PATIENCE_FIRST;
+	if (!automatic || governor->level < governor->least)
+		change(governor, governor->least, now_ns);
+}
+
 static void raise(struct governor *governor, uint64_t now_ns)
 {
 	if (governor->trying && governor->patience_ns < PATIENCE_MOST)

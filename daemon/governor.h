@@ -56,6 +56,9 @@ struct governor_sample {
 /* level: where it begins and below which it never goes, 0 to GOVERNOR_LEVELS - 1. */
 void governor_init(struct governor *governor, bool automatic, uint32_t level);
 
+/* Other settings from now on, as in governor_init(); what was counted stays. */
+void governor_configure(struct governor *governor, bool automatic, uint32_t level, uint64_t now_ns);
+
 /* A real frame and its in-betweens are over. The level of the next. */
 uint32_t governor_add(struct governor *governor, const struct governor_sample *sample);
 

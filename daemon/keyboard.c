@@ -12,15 +12,15 @@ static void next_method(struct keyboard *keyboard)
 	const struct engine_method_info *methods = engine_methods();
 	struct output_info info;
 	struct error error;
+	char change[64];
 	size_t i = 0;
 	output_get_info(keyboard->output, &info);
 	while (methods[i].name && strcmp(methods[i].name, info.method) != 0)
 		i++;
 	const char *next = methods[i].name && methods[i + 1].name ? methods[i + 1].name : methods[0].name;
-	if (output_set_method(keyboard->output, next, &error) < 0)
+	snprintf(change, sizeof(change), "method=%s", next);
+	if (live_set(keyboard->live, change, &error) < 0)
 		log_warning(keyboard->log, "%s", error.text);
-	else
-		log_info(keyboard->log, "method: %s", next);
 }
 
 /* A client that wants keys is asked first, since it may have something to save. */

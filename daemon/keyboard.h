@@ -5,6 +5,7 @@
 #ifndef PURSUIT_KEYBOARD_H
 #define PURSUIT_KEYBOARD_H
 
+#include "daemon/live.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
 #include "daemon/output.h"
@@ -14,6 +15,7 @@ struct keyboard {
 	struct loop *loop;
 	const struct log *log;
 	struct output *output;
+	struct live *live;
 	struct server *server; /* NULL: none yet */
 	uint64_t asked_client; /* to quit, by a key; 0: none */
 };

@@ -345,8 +345,7 @@ int settings_argument(struct settings *settings, unsigned group_mask, int argc, 
 
 /* ---- help ---- */
 
-/* What may be written, for a person: "yes or no", "4 to 64 px". */
-static void describe_values(const struct option_row *row, char *text, size_t size)
+void settings_describe_values(const struct option_row *row, char *text, size_t size)
 {
 	size_t used = 0;
 	switch (row->type) {
@@ -397,7 +396,7 @@ void settings_print_options(unsigned group_mask, FILE *out)
 		char range[128];
 		if (!(group_mask & (1u << row->group)))
 			continue;
-		describe_values(row, range, sizeof(range));
+		settings_describe_values(row, range, sizeof(range));
 		fprintf(out, "option\t%s%s\t%s\t", row->type == OPTION_FLAG ? "[no-]" : "", row->name, value_names[row->type]);
 		for (size_t i = 0; row->type == OPTION_CHOICE && row->choices[i]; i++)
 			fprintf(out, "%s%s", i ? "," : "", row->choices[i]);
@@ -411,7 +410,7 @@ void settings_print_help(unsigned group_mask, FILE *out)
 		char range[128], usage[64];
 		if (!(group_mask & (1u << row->group)))
 			continue;
-		describe_values(row, range, sizeof(range));
+		settings_describe_values(row, range, sizeof(range));
 		if (row->type == OPTION_FLAG)
 			snprintf(usage, sizeof(usage), "--[no-]%s", row->name);
 		else
@@ -433,7 +432,7 @@ void settings_print_config(FILE *out)
 			group = (int)row->group;
 			fprintf(out, "\n# ---- %s ----\n", titles[group]);
 		}
-		describe_values(row, range, sizeof(range));
+		settings_describe_values(row, range, sizeof(range));
 		fprintf(out, "\n# %s\n# (%s)\n#%s = %s\n", row->help, range, row->name, row->default_value);
 	}
 }

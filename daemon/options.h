@@ -107,6 +107,9 @@ const char *settings_nearest(const char *name);
 /* Writes the present value of a setting as text. -ENOENT for an unknown name. */
 int settings_get(const struct settings *settings, const char *name, char *value, size_t size);
 
+/* What may be written, for a person: "yes or no", "4 to 64 px". Truncates. */
+void settings_describe_values(const struct option_row *row, char *text, size_t size);
+
 /* Reads a file of `name = value` lines; lines that start with # are comments. Errors name file and line. */
 int settings_load(struct settings *settings, const char *path, struct error *error);
 

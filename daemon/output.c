@@ -27,7 +27,7 @@ struct output {
 	_Atomic uint64_t beats;
 	pthread_mutex_t lock; /* the mailbox */
 	pthread_cond_t wake;
-	bool stop, woken, streams_changed, presenter_changed, view_changed, method_changed;
+	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed;
 	bool started; /* the thread has said whether it could start */
 	int start_result;
 	struct error start_error;
@@ -35,7 +35,7 @@ struct output {
 	uint32_t stream_count;
 	struct presenter *presenter; /* to be used from now on */
 	uint32_t view;
-	char method[32];
+	struct settings wished; /* by main, for the render thread */
 	struct presenter_flip flips[FLIPS];
 	uint32_t flip_count;
 	struct output_event events[OUTPUT_EVENTS]; /* for main */
@@ -211,17 +211,18 @@ static void change_presenter(struct output *output, struct presenter *presenter)
 /* What main wants to be different. */
 static void read_wishes(struct output *output)
 {
-	char method[sizeof(output->method)];
+	struct settings wished;
 	pthread_mutex_lock(&output->lock);
-	const bool new_view = output->view_changed, new_method = output->method_changed;
+	const bool new_view = output->view_changed, new_settings = output->settings_changed;
 	const uint32_t view = output->view;
-	memcpy(method, output->method, sizeof(method));
-	output->view_changed = output->method_changed = false;
+	if (new_settings)
+		wished = output->wished;
+	output->view_changed = output->settings_changed = false;
 	pthread_mutex_unlock(&output->lock);
 	if (new_view)
 		render_set_view(&output->render, view);
-	if (new_method)
-		render_set_method(&output->render, method);
+	if (new_settings)
+		render_set_settings(&output->render, &wished);
 }
 
 /* Empties the mailbox. False: stop. */
@@ -499,20 +500,14 @@ void output_wake(struct output *output)
 	pthread_mutex_unlock(&output->lock);
 }
 
-int output_set_method(struct output *output, const char *name, struct error *error)
+void output_set_settings(struct output *output, const struct settings *settings)
 {
-	const struct engine_method_info *method = engine_methods();
-	while (method->name && strcmp(method->name, name) != 0)
-		method++;
-	if (!method->name)
-		return error_set(error, -EINVAL, "method: there is no method \"%.64s\"", name);
 	pthread_mutex_lock(&output->lock);
-	snprintf(output->method, sizeof(output->method), "%s", name);
-	snprintf(output->info.method, sizeof(output->info.method), "%s", name);
-	output->method_changed = true;
+	output->wished = *settings;
+	snprintf(output->info.method, sizeof(output->info.method), "%s", settings->method);
+	output->settings_changed = true;
 	wake_locked(output);
 	pthread_mutex_unlock(&output->lock);
-	return 0;
 }
 
 void output_toggle_view(struct output *output, uint32_t part)

@@ -93,8 +93,8 @@ void output_wake(struct output *output);
 int output_event_fd(const struct output *output);
 bool output_next_event(struct output *output, struct output_event *event);
 
-/* From the next real frame on. -EINVAL with a sentence: there is no such method. */
-int output_set_method(struct output *output, const char *name, struct error *error);
+/* The engine's settings, governor and level from the next real frame on; checked already (live.h). Others are ignored. */
+void output_set_settings(struct output *output, const struct settings *settings);
 /* Switches a part of the view (VIEW_...) on or off. */
 void output_toggle_view(struct output *output, uint32_t part);
 void output_toggle_fullscreen(struct output *output);

@@ -16,14 +16,13 @@
 #include "daemon/keyboard.h"
 #include "daemon/lab/chip.h"
 #include "daemon/lab/lab.h"
+#include "daemon/live.h"
 #include "daemon/log.h"
 #include "daemon/loop.h"
 #include "daemon/notify.h"
 #include "daemon/options.h"
 #include "daemon/output.h"
-#include "daemon/peer.h"
 #include "daemon/present/presenter.h"
-#include "daemon/reload.h"
 #include "daemon/seccomp.h"
 #include "daemon/server.h"
 #include "daemon/version.h"
@@ -39,6 +38,7 @@ struct pursuitd {
 	struct loop *loop;
 	struct lab *lab; /* NULL unless an option of the lab is set */
 	struct output *output;
+	struct live live;
 	struct control *control;
 	struct server *server;
 	struct keyboard keyboard;
@@ -91,19 +91,6 @@ static int take_config(struct settings *settings, int argc, char **argv, int *in
 	return settings_load(settings, path, error) < 0 ? -1 : 1;
 }
 
-/* A name or a list that only the programs linked in can judge. */
-static int check_names(const struct settings *settings, struct error *error)
-{
-	char list[256] = "";
-	for (const struct engine_method_info *method = engine_methods(); method->name; method++) {
-		if (strcmp(method->name, settings->method) == 0)
-			return presenter_check_list(settings->present, error);
-		const size_t used = strlen(list);
-		snprintf(list + used, sizeof(list) - used, "%s%s", used ? ", " : "", method->name);
-	}
-	return error_set(error, -EINVAL, "method: there is no method \"%s\"; there are %s", settings->method, list);
-}
-
 static int refuse_argument(const char *argument)
 {
 	char sentence[256], name[64];
@@ -146,18 +133,10 @@ static int read_arguments(struct settings *settings, int argc, char **argv)
 		if (taken == 0)
 			return refuse_argument(argv[i]);
 	}
-	return check_names(settings, &error) < 0 ? usage_error(error.text) : -1;
-}
-
-/* Users and groups that there are not would lock out whom they were meant to let in. */
-static int check_peers(const struct settings *settings)
-{
-	struct error error;
-	if (peer_check_users("allow-users", settings->allow_users, &error) == 0 &&
-		peer_check_groups("allow-groups", settings->allow_groups, &error) == 0)
-		return 0;
-	usage_error(error.text);
-	return -EINVAL;
+	/* Users that there are not would lock out whom they were meant to let in. */
+	if (live_check(settings, &error) < 0 || presenter_check_list(settings->present, &error) < 0)
+		return usage_error(error.text);
+	return -1;
 }
 
 /* ---- running ---- */
@@ -168,11 +147,11 @@ static void reload(struct pursuitd *daemon)
 	struct settings fresh;
 	notify_reloading(&daemon->log);
 	settings_defaults(&fresh);
-	if (read_arguments(&fresh, daemon->argc, daemon->argv) >= 0 || check_peers(&fresh) < 0)
+	if (read_arguments(&fresh, daemon->argc, daemon->argv) >= 0)
 		log_error(&daemon->log, "SIGHUP: the settings stay as they are");
 	else
 		log_info(&daemon->log, "SIGHUP: settings read again, %u changed",
-				 reload_settings(&daemon->settings, &fresh, &daemon->log));
+				 live_reload(&daemon->live, &fresh));
 	notify_ready(&daemon->log);
 }
 
@@ -255,12 +234,14 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->output = output_create(&output_params, error);
 	if (!daemon->output)
 		return -1;
+	daemon->live = (struct live){&daemon->settings, daemon->output, &daemon->log};
 	const struct control_params control_params = {daemon->loop,      &daemon->log,   &daemon->clock,
-												  &daemon->settings, daemon->output, daemon->lab};
+												  &daemon->settings, daemon->output, daemon->lab,
+												  &daemon->live};
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
 		return -1;
-	daemon->keyboard = (struct keyboard){.loop = daemon->loop, .log = &daemon->log, .output = daemon->output};
+	daemon->keyboard = (struct keyboard){.loop = daemon->loop, .log = &daemon->log, .output = daemon->output, .live = &daemon->live};
 	const struct server_params server_params = {daemon->loop,      &daemon->log,   &daemon->clock,
 												&daemon->settings, daemon->output, control_handle,
 												daemon->control,   keyboard_press, &daemon->keyboard};
@@ -341,8 +322,6 @@ int main(int argc, char **argv)
 	status = read_arguments(&daemon.settings, argc, argv);
 	if (status >= 0)
 		return status;
-	if (check_peers(&daemon.settings) < 0)
-		return EXIT_USAGE;
 	log_init(&daemon.log, (enum log_level)daemon.settings.log_level);
 	status = 0;
 	if (start(&daemon, &error) < 0) {

@@ -81,20 +81,29 @@ void render_set_view(struct render *render, uint32_t switches)
 	render->view.switches = switches;
 }
 
-void render_set_method(struct render *render, const char *name)
+/* What has changed, for the person who looks. */
+static void say_changes(struct render *render, const struct settings *settings)
 {
-	struct engine_params params;
-	struct error error = {""};
-	char message[64];
-	snprintf(render->settings->method, sizeof(render->settings->method), "%s", name);
-	int result = settings_engine_params(render->settings, &params, &error);
-	if (result == 0 && render->engine)
-		result = engine_set_params(render->engine, &params, &error);
-	if (result < 0)
-		log_warning(render->log, "method: %s: %s", name, error.text);
-	snprintf(message, sizeof(message), "method: %s", name);
-	view_say(&render->view, message, clock_now(render->clock));
-	render->redraw = true;
+	char message[96] = "", before[1024], after[1024];
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		const size_t used = strlen(message);
+		settings_get(render->settings, row->name, before, sizeof(before));
+		settings_get(settings, row->name, after, sizeof(after));
+		if (strcmp(before, after) != 0)
+			snprintf(message + used, sizeof(message) - used, "%s%s: %.32s", used ? "\n" : "", row->name, after);
+	}
+	if (*message)
+		view_say(&render->view, message, clock_now(render->clock));
+}
+
+void render_set_settings(struct render *render, const struct settings *settings)
+{
+	const bool governor = settings->governor != render->settings->governor || settings->level != render->settings->level;
+	say_changes(render, settings);
+	*render->settings = *settings;
+	if (governor)
+		governor_configure(&render->governor, settings->governor == 0, settings->level, clock_now(render->clock));
+	render->settings_changed = render->redraw = true;
 }
 
 void render_skip_frames(struct render *render, struct stream *stream)

@@ -54,6 +54,7 @@ struct render {
 	struct lab *lab;     /* NULL: none */
 	struct view view;
 	struct tee *tee;       /* NULL: none */
+	bool settings_changed; /* the engine does not know yet */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
 	struct stats *stats; /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
@@ -90,8 +91,8 @@ void render_finish(struct render *render);
 void render_set_presenter(struct render *render, struct presenter *presenter);
 /* What is drawn over the pictures, VIEW_... or-ed. */
 void render_set_view(struct render *render, uint32_t switches);
-/* The next real frames are made by this method; `name` is one of engine_methods(). */
-void render_set_method(struct render *render, const char *name);
+/* The next real frames are made with these; checked already. */
+void render_set_settings(struct render *render, const struct settings *settings);
 /* Takes over the presenter's grid as it is now. Has it changed? */
 bool render_follow_grid(struct render *render);
 

@@ -28,6 +28,8 @@ static const struct verb verbs[] = {
 	{"latency", verb_latency, "print, plot and compare the time points of displayed frames; measure a GPIO line"},
 	{"doctor", verb_doctor, "look at this machine: what works, what does not, what mends it"},
 	{"top", verb_top, "show live what a running daemon does"},
+	{"get", verb_get, "print the settings of a running daemon"},
+	{"set", verb_set, "change settings of a running daemon"},
 	{"status", verb_status, "say what a running daemon does"},
 	{NULL, NULL, NULL},
 };

@@ -5,7 +5,7 @@ import re
 
 import common
 
-VERBS = ["demo", "record", "replay", "report", "import", "export", "status", "latency", "top"]
+VERBS = ["demo", "record", "replay", "report", "import", "export", "status", "latency", "top", "get", "set"]
 
 
 class Usage(common.Case):
@@ -57,6 +57,8 @@ class Usage(common.Case):
             (["replay", "x", "--cell", "3"], "cell"),
             (["demo", "--scene", "nowhere"], "there is no scene nowhere"),
             (["demo", "--seconds", "-1"], "--seconds is -1"),
+            (["set"], "an argument is missing"),
+            (["set", "blur"], "blur is not of the form NAME=VALUE"),
         ]:
             result = self.must(*arguments, status=2)
             self.assertIn(words, result.stderr, arguments)

@@ -175,14 +175,15 @@ static void test_reload(void)
 	const int second = raw_greet(fixture.socket);
 	CHECK(second >= 0);
 	CHECK(raw_greet(fixture.socket) < 0);
-	write_config("max-clients = 3\nmethod = grid\nlog-level = debug\n");
+	write_config("max-clients = 3\nblur = off\nrefresh = 60\nlog-level = debug\n");
 	forget_messages();
 	kill(fixture.pid, SIGHUP);
 	play(&stream, 3);
 	CHECK(told("RELOADING=1\nMONOTONIC_USEC=", 20000));
 	CHECK(told("READY=1", 20000));
 	CHECK(fixture_logged(&fixture, "max-clients is 3 now, was 2"));
-	CHECK(fixture_logged(&fixture, "method is grid now; it stays hold until the daemon is restarted"));
+	CHECK(fixture_logged(&fixture, "blur is off now, was doubtful"));
+	CHECK(fixture_logged(&fixture, "refresh is 60 now; it stays 120 until the daemon is restarted"));
 	const int third = raw_greet(fixture.socket);
 	CHECK(third >= 0);
 	/* A mistake changes nothing, and ends nothing. */

@@ -136,7 +136,7 @@ static void test_keys(void)
 	xvfb_press(&xvfb, window, "i");
 	CHECK(play_until_pixel(6, 6, color_at(6, 6), true));
 	xvfb_press(&xvfb, window, "m");
-	CHECK(fixture_logged(&fixture, "method: "));
+	CHECK(fixture_logged(&fixture, "method is black now, was hold"));
 	xvfb_press(&xvfb, window, "q");
 	CHECK(fixture_logged(&fixture, "quit by key"));
 	stop(0);

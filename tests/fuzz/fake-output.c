@@ -105,9 +105,8 @@ void output_remove_stream(struct output *output, struct stream *stream)
 	}
 }
 
-int output_set_method(struct output *output, const char *name, struct error *error)
+void output_set_settings(struct output *output, const struct settings *settings)
 {
-	return 0;
 }
 
 bool output_focus(struct output *output, uint64_t client_id)

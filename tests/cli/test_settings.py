@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""get and set against a daemon of their own."""
+import json
+import os
+import signal
+import subprocess
+import time
+
+import common
+
+PURSUITD = os.environ["PURSUITD"]
+
+
+class Settings(common.Case):
+    def setUp(self):
+        super().setUp()
+        self.socket = self.path("socket")
+        self.log = open(self.path("log"), "w+")
+        self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--method", "hold"], stderr=self.log)
+        for _ in range(600):
+            if os.path.exists(self.socket) or self.daemon.poll() is not None:
+                break
+            time.sleep(0.05)
+
+    def tearDown(self):
+        self.daemon.send_signal(signal.SIGTERM)
+        status = self.daemon.wait(60)
+        self.log.close()
+        super().tearDown()
+        self.assertEqual(status, 0)
+
+    def get(self, *names):
+        return self.must("get", *names, "--socket", self.socket).stdout
+
+    def set(self, *changes, status=0):
+        return self.must("set", *changes, "--socket", self.socket, status=status).stderr
+
+    def test_get(self):
+        self.assertEqual(self.get("method"), "hold\n")
+        self.assertEqual(self.get("cell", "blur"), "cell = 8\nblur = doubtful\n")
+        self.assertIn("\nviewing-distance-mm = 600\n", self.get())
+        chosen = self.must("get", "cell", "present", "--json", "--socket", self.socket).stdout
+        self.assertEqual(json.loads(chosen), {"cell": "8", "present": "headless"})
+        wrong = self.must("get", "cel", "--socket", self.socket, status=2).stderr
+        self.assertIn("cel: there is no such setting; did you mean cell?", wrong)
+
+    def test_set(self):
+        self.set("method=grid", "cell=16")
+        self.assertEqual(self.get("method", "cell"), "method = grid\ncell = 16\n")
+        self.assertIn("it may be 4 to 64 px", self.set("blur=off", "cell=1", status=1))
+        self.assertEqual(self.get("blur"), "doubtful\n")
+        self.assertIn("needs a restart", self.set("present=kms", status=1))
+
+    def test_no_daemon(self):
+        for verb in (["get"], ["set", "cell=8"]):
+            self.assertIn("Start one: pursuitd", self.must(*verb, "--socket", self.path("none"), status=1).stderr)
+
+
+if __name__ == "__main__":
+    common.main()
