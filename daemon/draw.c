@@ -134,8 +134,9 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
 		return result;
 	}
-	struct engine_image target = {.data = image->data, .stride = image->stride};
+	struct engine_image target = {.data = image->data, .stride = image->stride, .holds = image->holds};
 	result = engine_render(render->engine, &request, &target, &error);
+	image->holds = result == 0 ? target.holds : 0;
 	if (result == 0)
 		view_draw(render, image);
 	if (result < 0) {
@@ -156,7 +157,7 @@ static void add_cost(struct render *render, struct cost *cost, uint64_t start_ns
 }
 
 /* Queues a picture for a vblank; -ETIME if it is over, and the picture is the caller's still. */
-static int queue(struct render *render, const struct presenter_image *image, uint64_t vblank, enum stats_show show,
+static int queue(struct render *render, struct presenter_image *image, uint64_t vblank, enum stats_show show,
 				 double phase)
 {
 	const uint64_t serial = render->serial + 1;
@@ -278,7 +279,7 @@ static void adapt_margin(struct render *render, bool late)
 }
 
 /* Queues the real frame; if its vblank is over, for the next one: it is late, never lost. */
-static int queue_real(struct render *render, const struct presenter_image *image, struct pacer_decision *decision,
+static int queue_real(struct render *render, struct presenter_image *image, struct pacer_decision *decision,
 					  uint64_t *vblank)
 {
 	bool late = false;

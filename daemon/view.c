@@ -100,11 +100,13 @@ static void write_text(struct render *render, uint64_t now_ns)
 
 /* ---- all ---- */
 
-void view_draw(struct render *render, const struct presenter_image *image)
+void view_draw(struct render *render, struct presenter_image *image)
 {
 	struct view *view = &render->view;
 	const struct overlay overlay = {image->data, image->stride, image->width, image->height};
 	const uint64_t now_ns = clock_now(render->clock);
+	if (view->switches || now_ns < view->message_until_ns)
+		image->holds = 0;
 	if (view->switches & VIEW_SPLIT)
 		draw_right_half(render, image, &overlay);
 	if (view->switches & VIEW_STATISTICS) {

@@ -37,7 +37,10 @@ void view_finish(struct view *view);
 /* Shows a line for two seconds. */
 void view_say(struct view *view, const char *message, uint64_t now_ns);
 
-/* Draws what is switched on over a picture that the engine has just made of the frame begun last. */
-void view_draw(struct render *render, const struct presenter_image *image);
+/*
+ * Draws what is switched on over a picture that the engine has just made of the frame begun last; image->holds is 0 if
+ * that is anything.
+ */
+void view_draw(struct render *render, struct presenter_image *image);
 
 #endif

@@ -55,9 +55,10 @@ void lab_flip(struct lab *lab, const struct presenter_flip *flip);
 
 /*
  * A picture that is about to be queued for this vblank (a standby picture: the
- * vblank of its real frame): its patch is drawn, its number noted.
+ * vblank of its real frame): its patch is drawn (image->holds is 0 then), its
+ * number noted.
  */
-void lab_mark_picture(struct lab *lab, const struct presenter_image *image, uint64_t serial, uint64_t vblank,
+void lab_mark_picture(struct lab *lab, struct presenter_image *image, uint64_t serial, uint64_t vblank,
                       enum points_show show);
 /* A vblank is over: what the render thread knows about it (all but flip, event, edge, photon). */
 void lab_tell(struct lab *lab, const struct points *points);

@@ -152,8 +152,11 @@ static void place(struct kms *kms, struct kms_picture *picture, uint32_t width, 
 {
 	const struct kms_mode *mode = kms_device_get_mode(kms->device);
 	const size_t x = (mode->width - width) / 2 / COLUMNS * COLUMNS, y = (mode->height - height) / 2;
-	if (picture->width != width || picture->height != height)
+	const bool same = picture->width == width && picture->height == height;
+	if (!same)
 		memset(picture->buffer.data, 0, picture->buffer.size);
+	image->holds = same ? picture->holds : 0;
+	picture->holds = 0;
 	picture->width = image->width = width;
 	picture->height = image->height = height;
 	image->stride = picture->buffer.stride;
@@ -188,6 +191,7 @@ static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t hei
 		return -EBUSY;
 	struct kms_picture *picture = &kms->pictures[index];
 	image->index = (uint32_t)index;
+	image->holds = 0;
 	if (!picture->buffer.data && kms_device_create_buffer(kms->device, &picture->buffer, &error) < 0) {
 		log_warning(kms->params.log, "%s", error.text);
 		presenter->impl->release(presenter, image);
@@ -200,6 +204,7 @@ static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t hei
 static void kms_release(struct presenter *presenter, const struct presenter_image *image)
 {
 	struct kms *kms = self_of(presenter);
+	kms->pictures[image->index].holds = image->holds;
 	pthread_mutex_lock(&kms->lock);
 	flips_release(&kms->scanout.flips, image->index);
 	pthread_mutex_unlock(&kms->lock);
@@ -219,6 +224,7 @@ static int kms_present(struct presenter *presenter, const struct presenter_image
 	struct kms *kms = self_of(presenter);
 	int result = -ETIME;
 
+	kms->pictures[image->index].holds = image->holds;
 	pthread_mutex_lock(&kms->lock);
 	if (!kms->running && !kms->lost && clock_now(kms->params.clock) < grid_time(&kms->grid, vblank))
 		kms_start(kms, vblank);
@@ -238,6 +244,7 @@ static void kms_set_standby(struct presenter *presenter, const struct presenter_
 							uint64_t serial)
 {
 	struct kms *kms = self_of(presenter);
+	kms->pictures[image->index].holds = image->holds;
 	pthread_mutex_lock(&kms->lock);
 	flips_set_standby(&kms->scanout.flips, image->index, group, serial);
 	pthread_mutex_unlock(&kms->lock);

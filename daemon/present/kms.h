@@ -32,6 +32,7 @@
 struct kms_picture {
 	struct kms_buffer buffer;
 	uint32_t width, height; /* of what was drawn into it; the rest is black */
+	uint64_t holds;         /* as struct presenter_image says; 0 while it is acquired */
 };
 
 struct kms {

@@ -88,13 +88,17 @@ int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t heigh
 	if (index < 0)
 		return -EBUSY;
 	struct pictures_memory *memory = &pictures->memory[index];
+	struct presenter_image *shape = &pictures->shapes[index];
+	const bool same = memory->size == size && shape->width == width && shape->height == height;
 	if (memory->size != size) {
 		free(memory->data);
 		memory->data = aligned_alloc(64, size);
 		memory->size = memory->data ? size : 0;
 	}
-	*image = (struct presenter_image){memory->data, stride, width, height, (uint32_t)index};
-	pictures->shapes[index] = *image;
+	*shape = (struct presenter_image){memory->data, stride, width, height, (uint32_t)index, 0};
+	*image = *shape;
+	image->holds = same ? memory->holds : 0;
+	memory->holds = 0;
 	if (memory->data)
 		return 0;
 	pictures_release(presenter, image);
@@ -104,6 +108,7 @@ int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t heigh
 void pictures_release(struct presenter *presenter, const struct presenter_image *image)
 {
 	struct pictures *pictures = pictures_of(presenter);
+	pictures->memory[image->index].holds = image->holds;
 	pthread_mutex_lock(&pictures->lock);
 	flips_release(&pictures->flips, image->index);
 	pthread_mutex_unlock(&pictures->lock);
@@ -115,6 +120,7 @@ int pictures_present(struct presenter *presenter, const struct presenter_image *
 	struct pictures *pictures = pictures_of(presenter);
 	int result = -ETIME;
 
+	pictures->memory[image->index].holds = image->holds;
 	pthread_mutex_lock(&pictures->lock);
 	const uint64_t latest_ns = clock_now(pictures->params.clock) + pictures->lead_ns;
 	const bool in_time = latest_ns < grid_time(&pictures->grid, vblank);
@@ -133,6 +139,7 @@ void pictures_set_standby(struct presenter *presenter, const struct presenter_im
 						  uint64_t serial)
 {
 	struct pictures *pictures = pictures_of(presenter);
+	pictures->memory[image->index].holds = image->holds;
 	pthread_mutex_lock(&pictures->lock);
 	flips_set_standby(&pictures->flips, image->index, group, serial);
 	pthread_mutex_unlock(&pictures->lock);

@@ -29,6 +29,7 @@ struct pictures {
 	struct pictures_memory {
 		uint8_t *data;
 		size_t size;
+		uint64_t holds; /* as struct presenter_image says; 0 while it is acquired */
 	} memory[FLIPS_IMAGES]; /* of an acquired picture: the render thread's; else as `shape` says */
 	struct presenter_image shapes[FLIPS_IMAGES]; /* as acquired last */
 };

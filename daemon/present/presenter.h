@@ -38,6 +38,11 @@ struct presenter_image {
 	size_t stride;
 	uint32_t width, height;
 	uint32_t index; /* the presenter's */
+	/*
+	 * What the memory holds, as its user said when it gave the picture back (present, set_standby or release); 0:
+	 * unknown. The presenter keeps it with the memory and writes nothing there; whoever else does sets it to 0.
+	 */
+	uint64_t holds;
 };
 
 enum presenter_shown {
