@@ -20,7 +20,7 @@ static enum reader reader_of(const struct option_row *row)
 		"max-clients",  "max-frame-mb", "max-streams",  "max-client-mb",
 		"max-messages", "allow-users",  "allow-groups", "log-level",
 	};
-	if (strcmp(row->name, "context") == 0 || strcmp(row->name, "gles") == 0)
+	if (strcmp(row->name, "context") == 0 || strcmp(row->name, "gles") == 0 || strcmp(row->name, "threads") == 0)
 		return READER_START;
 	if (row->group == OPTION_ENGINE || strcmp(row->name, "governor") == 0)
 		return READER_RENDER;

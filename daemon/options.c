@@ -58,6 +58,9 @@ static const struct option_row rows[] = {
 		 "How displayed frames are made from real ones. An unknown name is answered with the list."),
 	TEXT(context, "context", OPTION_ENGINE, "auto", "Where the engine runs: auto, egl, egl-device:INDEX, osmesa or cpu."),
 	FLAG(gles, "gles", OPTION_ENGINE, "no", "Use OpenGL ES 3.1 instead of OpenGL 4.3 core."),
+	NUMBER(threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
+		   "Threads that the engine draws with where it runs on the CPU; 0: one for each processor that it may run on, at "
+		   "most 8."),
 	CHOICE(motion_model, "motion-model", OPTION_ENGINE, "linear", motion_model_choices,
 		   "How the methods with a grid continue motion: straight on, or with its change since the frame before."),
 	CHOICE(blur, "blur", OPTION_ENGINE, "doubtful", blur_choices,
@@ -443,6 +446,7 @@ int settings_engine_params(const struct settings *settings, struct engine_params
 {
 	*params = (struct engine_params){
 		.gles = settings->gles,
+		.threads = settings->threads,
 		.method = settings->method,
 		.motion_model = (enum engine_motion_model)settings->motion_model,
 		.blur = (enum engine_blur)settings->blur,

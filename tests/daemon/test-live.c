@@ -135,6 +135,7 @@ static void test_refusals(void)
 		{"set gama=2", "gama: there is no such setting; did you mean gamma?"},
 		{"set refresh=60", "refresh cannot change while the daemon runs; it needs a restart"},
 		{"set context=cpu", "context cannot change while the daemon runs; it needs a restart"},
+		{"set threads=2", "threads cannot change while the daemon runs; it needs a restart"},
 		{"set allow-users=nobody-of-this-name", "allow-users"},
 		{"set cell=32 blur=much", "blur"},
 	};

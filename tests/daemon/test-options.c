@@ -48,6 +48,7 @@ static void expect(const char *name, const char *value, int result, const char *
 static void test_refusals(void)
 {
 	expect("cell", "3", -EINVAL, "cell: 3 is below 4 px");
+	expect("threads", "9", -EINVAL, "threads: 9 is above 8");
 	expect("cell", "8.5", -EINVAL, "cell: \"8.5\" is not a whole number");
 	expect("cell", "", -EINVAL, "cell: \"\" is not a whole number");
 	expect("cell", "99999999999999999999", -EINVAL, "cell: 99999999999999999999 is above 64 px");
@@ -213,6 +214,10 @@ static void test_engine_params(void)
 	CHECK_INT(params.context, ENGINE_CONTEXT_AUTO);
 	CHECK_INT(params.threshold_quarter, 2);
 	CHECK_INT(params.cell, 8);
+	CHECK_INT(params.threads, 0);
+	CHECK_INT(settings_set(&settings, "threads", "3", &error), 0);
+	CHECK_INT(settings_engine_params(&settings, &params, &error), 0);
+	CHECK_INT(params.threads, 3);
 	CHECK_INT(params.curve, ENGINE_CURVE_SRGB);
 	CHECK(!params.no_compensation);
 	CHECK_INT(settings_set(&settings, "context", "egl-device:3", &error), 0);
