@@ -5,9 +5,11 @@
  * The GLFW presenter: a window, or full screen, on a desktop. Main makes the
  * window and handles its events; a thread here, the keeper of vblanks, takes
  * the picture of each one out of the queue and orders it from the drawing
- * thread, whose swaps may wait for the display as long as they like: one that
- * does not come back in time (a hidden window) leaves the keeper counting
- * vblanks by the clock.
+ * thread, whose swaps may wait for the display as long as they like. One that
+ * does not come back in time leaves the keeper counting vblanks by the clock;
+ * after some of those in a row (a window that nobody sees, which the window
+ * system does not say) no vblank waits for its swap any more, until they are
+ * quick again.
  *
  * Where swaps wait for the display, its vblanks are learned from their time
  * stamps; where they do not (no vsync), vblanks are those of the rate wished
@@ -28,6 +30,9 @@
 #define PROBE_SWAPS 12u
 #define PROBE_NS (500 * MS)
 #define STUCK_NS (500 * MS)
+/* Swaps in a row: so many that did not come back leave the clock alone, so many quick ones are waited for again. */
+#define MISSING_SWAPS 8u
+#define QUICK_SWAPS 30u
 
 struct glfw {
 	struct pictures pictures; /* its lock is for what follows, unless it says otherwise */
@@ -39,7 +44,8 @@ struct glfw {
 
 	/* the keeper's own */
 	struct drawer *drawer;
-	bool under_way, stuck_said;
+	bool under_way, stuck_said, by_clock; /* by_clock: no vblank waits for its swap */
+	uint32_t missing, quick;              /* swaps in a row */
 	uint64_t ordered_ns;
 	uint32_t image; /* under way, referenced; FLIPS_IMAGES: none */
 	uint32_t drawn_changes, probed_displays;
@@ -89,11 +95,33 @@ static bool wait_for_order(struct glfw *self, uint64_t until_ns, struct drawer_s
 	return true;
 }
 
+/* Was the last swap back in time? */
+static void judge_swap(struct glfw *self, bool back)
+{
+	self->missing = back ? 0 : self->missing + 1;
+	self->quick = back ? self->quick + 1 : 0;
+	if (!self->by_clock && self->missing >= MISSING_SWAPS) {
+		log_info(self->pictures.params.log, "glfw: swaps take too long; vblanks do not wait for them until they are quick");
+		self->by_clock = true;
+	} else if (self->by_clock && self->quick >= QUICK_SWAPS) {
+		log_info(self->pictures.params.log, "glfw: swaps are quick again");
+		self->by_clock = false;
+		/* Its vblanks went on meanwhile. */
+		if (self->waits_for_display)
+			self->probed_displays = self->state.displays - 1;
+	}
+}
+
 /* With the lock: may it draw now? */
 static bool can_draw(struct glfw *self)
 {
 	struct drawer_swap swap;
-	return wait_for_order(self, 0, &swap) && !self->state.hidden;
+	const bool was_under_way = self->under_way;
+	if (!wait_for_order(self, 0, &swap))
+		return false;
+	if (was_under_way && self->by_clock)
+		judge_swap(self, (double)(swap.time_ns - self->ordered_ns) < 1.5 * grid_period_ns(&self->pictures.grid));
+	return !self->state.hidden;
 }
 
 /* ---- the keeper: the display's rate ---- */
@@ -191,10 +219,14 @@ static void keep_vblank(struct glfw *self)
 	const bool due = flip.shown != PRESENTER_KEPT || self->state.changes != self->drawn_changes;
 	if (due && can_draw(self)) {
 		order(self, 1);
-		if (wait_for_order(self, grid_time(&pictures->grid, flip.vblank + 2), &swap))
-			note_swap(self, &swap, &flip);
+		if (!self->by_clock) {
+			const bool back = wait_for_order(self, grid_time(&pictures->grid, flip.vblank + 2), &swap);
+			judge_swap(self, back);
+			if (back)
+				note_swap(self, &swap, &flip);
+		}
 	}
-	if (!self->fitted && pictures->flips.has_front) {
+	if (!self->fitted && pictures->flips.has_front && pictures->flips.front.group > 0) {
 		self->fitted = true;
 		self->fit_width = pictures->shapes[pictures->flips.front.image].width;
 		self->fit_height = pictures->shapes[pictures->flips.front.image].height;
