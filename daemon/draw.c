@@ -5,12 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/overlay.h"
 #include "daemon/render.h"
 
 #define MS UINT64_C(1000000)
 #define MARGIN_STEP UINT64_C(500000)
 /* A real frame that is shown for longer than this may stand in a pause. */
 #define GOVERNED_VBLANKS 8u
+/* Of the picture before the first frame. */
+#define EMPTY_WIDTH 960u
+#define EMPTY_HEIGHT 540u
 #define ENGINE_FIRST_DELAY (100 * MS)
 #define ENGINE_LAST_DELAY (5000 * MS)
 
@@ -419,6 +423,20 @@ void draw_real(struct render *render, uint64_t now_ns)
 }
 
 /* ---- the others ---- */
+
+void draw_empty(struct render *render, uint64_t vblank)
+{
+	const struct presenter_impl *impl = render->presenter->impl;
+	struct presenter_image image;
+	/* A file of what is shown has the size of the first picture. */
+	if (render->tee || impl->acquire(render->presenter, EMPTY_WIDTH, EMPTY_HEIGHT, &image) < 0)
+		return;
+	image.holds = 0;
+	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
+	view_draw(render, &image);
+	if (queue(render, &image, vblank, STATS_REPEAT, 0.0) < 0)
+		impl->release(render->presenter, &image);
+}
 
 void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank)
 {

@@ -8,12 +8,13 @@
 
 #include "daemon/letters.h"
 
+#define BLACK 0xff000000u
 #define PAPER 0xff181818u
 #define INK 0xfff0f0f0u
 #define LINE 0xff808080u
 #define MARGIN 4u /* in dots, between box and letters, and between box and picture */
 #define ADVANCE (LETTER_WIDTH + 1)
-#define LINE_HEIGHT (LETTER_HEIGHT + 3)
+#define LINE_HEIGHT (LETTER_HEIGHT + 2)
 
 uint32_t overlay_scale(const struct overlay *overlay)
 {
@@ -33,6 +34,11 @@ static void fill(const struct overlay *overlay, uint32_t x, uint32_t y, uint32_t
 		for (uint32_t i = 0; i < width; i++)
 			memcpy(to + (size_t)i * 4, &color, sizeof(color));
 	}
+}
+
+void overlay_blacken(const struct overlay *overlay)
+{
+	fill(overlay, 0, 0, overlay->width, overlay->height, BLACK);
 }
 
 static void draw_letter(const struct overlay *overlay, uint32_t x, uint32_t y, uint32_t scale, char letter)

@@ -22,6 +22,8 @@ uint32_t overlay_scale(const struct overlay *overlay);
 /* Lines of printable ASCII, divided by '\n', light on an opaque dark box. */
 void overlay_text(const struct overlay *overlay, enum overlay_place place, const char *text);
 
+/* Nothing but black. */
+void overlay_blacken(const struct overlay *overlay);
 /* A grey line from top to bottom at x. */
 void overlay_divide(const struct overlay *overlay, uint32_t x);
 

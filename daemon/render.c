@@ -179,6 +179,11 @@ void render_plan_pause_until(struct render *render, uint64_t vblank)
 		showing_plan(&render->showing, render->next_vblank, SHOWING_PAUSE);
 }
 
+static uint64_t sooner_of(uint64_t a, uint64_t b)
+{
+	return a < b ? a : b;
+}
+
 static uint64_t later_of(uint64_t a, uint64_t b)
 {
 	return a > b ? a : b;
@@ -254,13 +259,16 @@ static void draw_still_anew(struct render *render, uint64_t now_ns)
 {
 	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + estimate(render, &render->plain_cost));
 	render->redraw = false;
-	if (!render->begun || !render->engine)
+	if ((!render->begun && render->group > 0) || !render->engine)
 		return;
 	if (vblank > render->next_vblank)
 		render->next_vblank = vblank;
 	render->pause_vblanks = PLAIN_AFTER;
 	render->paused = false;
-	draw_plain(render, render->next_vblank);
+	if (render->begun)
+		draw_plain(render, render->next_vblank);
+	else
+		draw_empty(render, render->next_vblank);
 	showing_plan(&render->showing, render->next_vblank++, SHOWING_PAUSE);
 }
 
@@ -359,11 +367,13 @@ uint64_t render_step(struct render *render)
 			return 0;
 		}
 	}
-	if (render->redraw && render->pause_vblanks >= PLAIN_AFTER)
+	if (view_message_is_over(&render->view, now_ns))
+		render->redraw = true;
+	if (render->redraw && (render->pause_vblanks >= PLAIN_AFTER || render->group == 0))
 		draw_still_anew(render, now_ns);
 	if (render->paused)
-		return wake_ns;
+		return sooner_of(wake_ns, view_message_end(&render->view));
 	const bool moves = render->stream && render->begun && render->pacer.has_frame;
 	const uint64_t next_ns = moves ? show_between(render, now_ns, urgent) : wind_down(render, now_ns);
-	return next_ns < wake_ns ? next_ns : wake_ns;
+	return sooner_of(next_ns, wake_ns);
 }

@@ -123,6 +123,8 @@ void draw_real(struct render *render, uint64_t now_ns);
 void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank);
 /* Draws the plain picture, as standby or, for a vblank > 0, to be shown there. */
 void draw_plain(struct render *render, uint64_t vblank);
+/* Queues a black picture with what is drawn over it: before the first frame. */
+void draw_empty(struct render *render, uint64_t vblank);
 /* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
 void draw_count_report(struct render *render);
 /* Makes the engine and draws with it once. 0 or -errno with a sentence. */

@@ -25,6 +25,19 @@ void view_say(struct view *view, const char *message, uint64_t now_ns)
 	view->message_until_ns = now_ns + MESSAGE_NS;
 }
 
+uint64_t view_message_end(const struct view *view)
+{
+	return view->message_until_ns ? view->message_until_ns : UINT64_MAX;
+}
+
+bool view_message_is_over(struct view *view, uint64_t now_ns)
+{
+	const bool over = now_ns >= view_message_end(view);
+	if (over)
+		view->message_until_ns = 0;
+	return over;
+}
+
 /* ---- the right half ---- */
 
 /* The real frame as it came, once a frame. False: there is none. */
@@ -33,6 +46,8 @@ static bool make_plain(struct render *render, const struct presenter_image *imag
 	const struct engine_request request = {.show = ENGINE_SHOW_PLAIN};
 	struct view *view = &render->view;
 	struct error error;
+	if (!render->begun)
+		return false;
 	if (view->plain_width != image->width || view->plain_height != image->height) {
 		free(view->plain);
 		view->plain = aligned_alloc(64, ((size_t)image->width * image->height * 4 + 63) / 64 * 64);
@@ -76,8 +91,9 @@ static void write_text(struct render *render, uint64_t now_ns)
 	const uint64_t active_ns = stats->active_ns - view->text_active_ns;
 	const double hz = active_ns ? (double)(stats->displayed_frames - view->text_frames) * 1e9 / (double)active_ns : 0.0;
 	const double real_hz = render->pacer.interval_ns ? 1e9 / (double)render->pacer.interval_ns : 0.0;
-	uint32_t width, height;
-	engine_get_size(render->engine, &width, &height);
+	uint32_t width = 0, height = 0;
+	if (render->begun) /* else it may hold what it was warmed up with */
+		engine_get_size(render->engine, &width, &height);
 	snprintf(view->text, sizeof(view->text),
 			 "%s  %ux%u  %s\n"
 			 "%.1f real frames/s, %.1f Hz displayed\n"

@@ -37,9 +37,14 @@ void view_finish(struct view *view);
 /* Shows a line for two seconds. */
 void view_say(struct view *view, const char *message, uint64_t now_ns);
 
+/* When the line goes; UINT64_MAX without one. */
+uint64_t view_message_end(const struct view *view);
+/* Has it gone just now? True once. */
+bool view_message_is_over(struct view *view, uint64_t now_ns);
+
 /*
- * Draws what is switched on over a picture that the engine has just made of the frame begun last; image->holds is 0 if
- * that is anything.
+ * Draws what is switched on over a picture that the engine has just made of the frame begun last, or over an empty one
+ * before the first; image->holds is 0 if that is anything.
  */
 void view_draw(struct render *render, struct presenter_image *image);
 

@@ -3,11 +3,14 @@
 
 /* The GLFW presenter under Xvfb: what the engine made is what is on the screen, keys work, nothing hangs. */
 
+#include <jansson.h>
 #include <signal.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/raw-client.h"
 #include "tests/daemon/xvfb.h"
 
 #define WIDTH 160u
@@ -71,6 +74,37 @@ static bool play_until_pixel(uint32_t x, uint32_t y, uint32_t color, bool equal)
 		if ((xvfb_pixel(&xvfb, window, x, y) == color) == equal)
 			return true;
 		submit_one();
+	}
+	return false;
+}
+
+/* Flips whose picture was drawn: all but those by the clock alone. */
+static json_int_t count_drawn(void)
+{
+	static struct raw_reply reply;
+	const int fd = raw_greet(fixture.socket);
+	const char *source;
+	json_t *count;
+	json_int_t drawn = 0;
+	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
+	json_t *status = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
+	json_object_foreach(json_object_get(status, "flip_time_sources"), source, count)
+	{
+		if (strcmp(source, "timer") != 0)
+			drawn += json_integer_value(count);
+	}
+	json_decref(status);
+	close(fd);
+	return drawn;
+}
+
+/* Plays until frames are shown and nothing is drawn for them. */
+static bool play_until_undrawn(void)
+{
+	for (int i = 0; i < 40; i++) {
+		const json_int_t before = count_drawn();
+		if (play_until_shown(10) && count_drawn() == before)
+			return true;
 	}
 	return false;
 }
@@ -142,17 +176,47 @@ static void test_keys(void)
 	stop(0);
 }
 
-/* Pictures go on being counted, and are seen again afterwards. */
+/* Until a pixel of the window is black, or not. */
+static bool wait_for_black(uint32_t x, uint32_t y, bool black)
+{
+	for (int i = 0; i < PATIENCE_FRAMES; i++) {
+		if ((xvfb_pixel(&xvfb, window, x, y) == 0) == black)
+			return true;
+		sleep_ms(25);
+	}
+	return false;
+}
+
+/* The help is there before any game is. */
+static void test_help_without_a_game(void)
+{
+	const char *const arguments[] = {"--present", "glfw", "--window-size", "640x360", NULL};
+	fixture_start(&fixture, arguments);
+	window = xvfb_find(&xvfb, "Pursuit");
+	CHECK(wait_for_black(320, 180, true));
+	xvfb_press(&xvfb, window, "h");
+	CHECK(wait_for_black(320, 180, false));
+	CHECK(wait_for_black(10, 10, true));
+	xvfb_press(&xvfb, window, "h");
+	CHECK(wait_for_black(320, 180, true));
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+/* Frames go on being shown by the clock, nothing is drawn that nobody sees; pictures are seen again afterwards. */
 static void test_hidden_window(void)
 {
 	start("glfw");
 	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
 	XUnmapWindow(xvfb.display, window);
 	XFlush(xvfb.display);
+	CHECK(play_until_undrawn());
+	const json_int_t drawn = count_drawn();
 	CHECK(play_until_shown(20));
+	CHECK_INT(count_drawn(), drawn);
 	XMapWindow(xvfb.display, window);
 	XFlush(xvfb.display);
 	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
+	CHECK(count_drawn() > drawn);
 	stop(SIGTERM);
 }
 
@@ -176,6 +240,7 @@ int main(int argc, char **argv)
 	RUN(test_shows_the_picture);
 	RUN(test_resized_window);
 	RUN(test_keys);
+	RUN(test_help_without_a_game);
 	RUN(test_hidden_window);
 	RUN(test_lost_server); /* the last one: it has no server afterwards */
 	xvfb_stop(&xvfb);
