@@ -373,6 +373,10 @@ static void on_key(struct control *control, const struct request *request)
 		reply(control, request, EINVAL, "key: must be one character, or escape, f1 or close");
 		return;
 	}
+	if (keys_find(key.code) == KEY_QUIT && !server_is_owner(control->server, request->client_id)) {
+		reply(control, request, EPERM, "key: the daemon's own user or root only may end it");
+		return;
+	}
 	output_press_key(control->params.output, &key);
 	reply(control, request, 0, "pressed");
 }
@@ -380,12 +384,13 @@ static void on_key(struct control *control, const struct request *request)
 static void on_set(struct control *control, const struct request *request)
 {
 	static const char focus[] = "focus=";
+	const bool owner = server_is_owner(control->server, request->client_id);
 	struct error error = {""};
 	int result;
 	if (strncmp(request->arguments, focus, strlen(focus)) == 0)
 		result = server_focus(control->server, request->arguments + strlen(focus), &error);
 	else
-		result = live_set(control->params.live, request->arguments, &error);
+		result = live_set(control->params.live, request->arguments, owner, &error);
 	reply(control, request, result, result < 0 ? error.text : "set");
 }
 

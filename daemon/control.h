@@ -17,10 +17,12 @@
  *   record-stop             ends the recording; answered when it is on disk:
  *                           {frames, dropped, bytes, error}
  *   set NAME=VALUE ...      settings by name, all or none of them (live.h); those of
- *                           the picture from the next real frame on
+ *                           the picture from the next real frame on; others only
+ *                           for the daemon's own user and root (EPERM)
  *   set focus=CLIENT        shows this client, by number or name (see status)
  *   key KEY                 as if it had been pressed in the window: one
- *                           character, or escape, f1, close
+ *                           character, or escape, f1, close; those that quit are for
+ *                           the daemon's own user and root (EPERM)
  *   ping                    "pong"
  */
 #ifndef PURSUIT_CONTROL_H

@@ -19,7 +19,7 @@ static void next_method(struct keyboard *keyboard)
 		i++;
 	const char *next = methods[i].name && methods[i + 1].name ? methods[i + 1].name : methods[0].name;
 	snprintf(change, sizeof(change), "method=%s", next);
-	if (live_set(keyboard->live, change, &error) < 0)
+	if (live_set(keyboard->live, change, false, &error) < 0)
 		log_warning(keyboard->log, "%s", error.text);
 }
 

@@ -116,7 +116,7 @@ static const struct option_row *find_row(const char *name)
 }
 
 /* "NAME=VALUE". */
-static int set_one(struct settings *settings, char *text, struct error *error)
+static int set_one(struct settings *settings, char *text, bool owner, struct error *error)
 {
 	char values[128];
 	struct error inner;
@@ -127,6 +127,8 @@ static int set_one(struct settings *settings, char *text, struct error *error)
 	const struct option_row *row = find_row(text);
 	if (row && !live_can_change(row))
 		return error_set(error, -EINVAL, "%s cannot change while the daemon runs; it needs a restart", row->name);
+	if (row && !owner && reader_of(row) == READER_MAIN)
+		return error_set(error, -EPERM, "%s is changed by the daemon's own user or root only", row->name);
 	if (settings_set(settings, text, equals + 1, &inner) == 0)
 		return 0;
 	if (!row || row->type == OPTION_TEXT || row->type == OPTION_CHOICE)
@@ -135,7 +137,7 @@ static int set_one(struct settings *settings, char *text, struct error *error)
 	return error_set(error, -EINVAL, "%.300s; it may be %s", inner.text, values);
 }
 
-int live_set(struct live *live, const char *text, struct error *error)
+int live_set(struct live *live, const char *text, bool owner, struct error *error)
 {
 	struct settings fresh = *live->settings;
 	char copy[1024], *rest = copy;
@@ -147,7 +149,7 @@ int live_set(struct live *live, const char *text, struct error *error)
 	if (!one)
 		return error_set(error, -EINVAL, "set: what? NAME=VALUE");
 	for (; one && result == 0; one = strtok_r(NULL, " ", &rest))
-		result = set_one(&fresh, one, error);
+		result = set_one(&fresh, one, owner, error);
 	if (result == 0)
 		result = live_check(&fresh, error);
 	if (result == 0)

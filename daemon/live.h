@@ -22,10 +22,11 @@ struct live {
 };
 
 /*
- * "NAME=VALUE", or several with spaces between them: all, or none of them. 0 or -EINVAL with a sentence that names
- * the setting and what it may be.
+ * "NAME=VALUE", or several with spaces between them: all, or none of them. Who is not the `owner` of the daemon may
+ * change settings of the picture alone: a limit that a client may lift itself is none. 0, -EINVAL or -EPERM with a
+ * sentence that names the setting and what it may be.
  */
-int live_set(struct live *live, const char *text, struct error *error);
+int live_set(struct live *live, const char *text, bool owner, struct error *error);
 
 /* Takes over what may change from `fresh`; the log tells of each. Gives how many settings took effect. */
 unsigned live_reload(struct live *live, const struct settings *fresh);

@@ -140,6 +140,11 @@ static bool is_member(const struct peer *peer, int socket, const char *list)
 	return member;
 }
 
+bool peer_is_owner(const struct peer *peer)
+{
+	return peer->uid == 0 || peer->uid == geteuid();
+}
+
 bool peer_allowed(const struct peer *peer, int socket, const char *users, const char *groups)
 {
 	if (!*users && !*groups)

@@ -30,4 +30,7 @@ int peer_check_groups(const char *option, const char *groups, struct error *erro
 /* `socket` tells the peer's other groups. Names that are not known allow nobody. */
 bool peer_allowed(const struct peer *peer, int socket, const char *users, const char *groups);
 
+/* The daemon's own user, or root: may do to the daemon what would otherwise take away from the others. */
+bool peer_is_owner(const struct peer *peer);
+
 #endif

@@ -302,6 +302,12 @@ int server_focus(struct server *server, const char *name, struct error *error)
 
 /* ---- control ---- */
 
+bool server_is_owner(const struct server *server, uint64_t client_id)
+{
+	const struct client *client = find_client(server, client_id);
+	return client && peer_is_owner(&client->peer);
+}
+
 void server_reply(struct server *server, uint64_t client_id, uint32_t serial, int status, const char *text)
 {
 	struct client *client = find_client(server, client_id);

@@ -57,6 +57,9 @@ bool server_send_key(struct server *server, const struct presenter_key *key);
 /* Shows this client's newest stream: by number, or by name. -ENOENT with a sentence. */
 int server_focus(struct server *server, const char *name, struct error *error);
 
+/* Is this client's user the daemon's own, or root? */
+bool server_is_owner(const struct server *server, uint64_t client_id);
+
 /* One object per stream. */
 json_t *server_streams_json(const struct server *server);
 uint32_t server_client_count(const struct server *server);

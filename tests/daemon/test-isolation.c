@@ -98,6 +98,47 @@ static void test_strangers(void)
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }
 
+/* What a process of another user is answered to a request: an errno, 0 done. */
+static int ask_as_stranger(const char *request)
+{
+	fflush(stdout);
+	const pid_t child = fork();
+	if (child == 0) {
+		static struct raw_reply reply;
+		const gid_t none = OTHER_GROUP;
+		if (setgroups(1, &none) < 0 || setgid(THEIR_GROUP) < 0 || setuid(STRANGER) < 0)
+			_exit(249);
+		_exit(raw_control(raw_greet(fixture.socket), request, -1, &reply) & 0xff);
+	}
+	int status = 0;
+	waitpid(child, &status, 0);
+	return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+/* A limit that a client may lift itself is none, nor may it end what others use. */
+static void test_strangers_change_no_limits(void)
+{
+	static const char *const refused[] = {"set max-client-mb=4096",
+										  "set allow-users=54331",
+										  "set blur=off max-clients=1",
+										  "set log-level=error",
+										  "key q",
+										  "key escape"};
+	static struct raw_reply reply;
+	if (geteuid() != 0)
+		return;
+	start_for_all("--allow-users", "54321");
+	const int own = raw_greet(fixture.socket);
+	for (size_t i = 0; i < sizeof(refused) / sizeof(refused[0]); i++)
+		CHECK_INT(ask_as_stranger(refused[i]), EPERM);
+	CHECK_INT(ask_as_stranger("set method=hold"), 0);
+	CHECK_INT(ask_as_stranger("key i"), 0);
+	CHECK_INT(raw_control(own, "set max-clients=5", -1, &reply), 0);
+	CHECK_INT(raw_control(own, "ping", -1, &reply), 0);
+	close(own);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
 static void test_unknown_names(void)
 {
 	const char *const arguments[] = {"--allow-users", "no-such-user-here", NULL};
@@ -267,6 +308,7 @@ int main(int argc, char **argv)
 	fixture_init(&fixture, argv[1]);
 	RUN(test_lists);
 	RUN(test_strangers);
+	RUN(test_strangers_change_no_limits);
 	RUN(test_unknown_names);
 	RUN(test_streams_and_bytes);
 	RUN(test_message_rate);
