@@ -308,11 +308,12 @@ static void on_lost(void *data, const char *sentence)
 
 static void free_glfw(struct glfw *self)
 {
-	/* A thread that hangs in a swap still has the window. */
-	if (drawer_destroy(&self->drawer))
-		window_destroy(&self->window);
-	else
+	if (!drawer_destroy(&self->drawer)) {
+		/* The thread that hangs in it goes on with the window, its events and the picture when it comes back. */
 		log_warning(self->pictures.params.log, "glfw: a swap hangs; its window is left behind");
+		return;
+	}
+	window_destroy(&self->window);
 	pictures_finish(&self->pictures);
 	free(self);
 }
