@@ -135,7 +135,8 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 	engine_get_size(render->engine, &width, &height);
 	int result = presenter->impl->acquire(presenter, width, height, image);
 	if (result < 0) {
-		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
+		if (result != -E2BIG)
+			log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
 		return result;
 	}
 	struct engine_image target = {.data = image->data, .stride = image->stride, .holds = image->holds};

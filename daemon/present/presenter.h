@@ -131,7 +131,10 @@ struct presenter_impl {
 	uint64_t (*get_lead)(struct presenter *presenter);
 	/* Optional: which display in which mode, for a person. Lives as long as the presenter. */
 	const char *(*get_display)(struct presenter *presenter);
-	/* A free picture to draw into; never waits. -EBUSY: all are queued or shown; -ENOMEM. */
+	/*
+	 * A free picture to draw into; never waits. -EBUSY: all are queued or shown; -ENOMEM; -E2BIG: larger than the
+	 * display, which the presenter has said.
+	 */
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/* Gives a picture back undrawn. */
 	void (*release)(struct presenter *presenter, const struct presenter_image *image);
