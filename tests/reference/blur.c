@@ -31,7 +31,7 @@ void reference_reduce(struct reference_picture *out, const struct reference_pict
 			}
 }
 
-static void spline_weights(double f, double w[4])
+void reference_spline_weights(double f, double w[4])
 {
 	w[0] = (1.0 - f) * (1.0 - f) * (1.0 - f) / 6.0;
 	w[1] = (3.0 * f * f * f - 6.0 * f * f + 4.0) / 6.0;
@@ -46,8 +46,8 @@ static void reconstruct(struct reference_picture *out, const struct reference_pi
 			const double tx = (double)x / scale, ty = (double)y / scale;
 			const long i = (long)floor(tx), j = (long)floor(ty);
 			double wx[4], wy[4];
-			spline_weights(tx - (double)i, wx);
-			spline_weights(ty - (double)j, wy);
+			reference_spline_weights(tx - (double)i, wx);
+			reference_spline_weights(ty - (double)j, wy);
 			for (int c = 0; c < 4; c++) {
 				double sum = 0.0;
 				for (int b = 0; b < 4; b++)

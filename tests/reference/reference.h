@@ -134,6 +134,9 @@ void reference_warp(const struct reference_grid *grid, uint32_t width, uint32_t 
 void reference_reduce(struct reference_picture *out, const struct reference_picture *in, double bias);
 void reference_low(struct reference_picture *out, const struct reference_picture *picture, uint32_t level, double bias);
 
+/* Uniform cubic B-spline: weights of the four texels about a place, f in [0, 1) from the second [4]. */
+void reference_spline_weights(double f, double w[4]);
+
 /* Blur weight and tear of a stretch, and of one triangle [5]. */
 double reference_weight_of(double stretch);
 double reference_tear_of(double stretch);

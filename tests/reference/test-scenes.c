@@ -6,9 +6,9 @@
  * backward motion, depth and UI as a game would hand them in. The same bounds
  * as in test-engine.c: no pixel outside, and the same shares.
  */
-#include "client/scenes/scene.h"
 #include "engine-case.h"
 #include "input.h"
+#include "scene-frame.h"
 #include "tests/scenes/context.h"
 #include "tests/test.h"
 
@@ -17,74 +17,29 @@
 #define INTERVAL 0.025
 #define MAX_FRAMES 64
 
-struct scene_frame {
+struct scene_case {
 	const char *scene;
 	double time;
-	struct frame frame;
-	uint8_t *memory;
+	struct scene_frame read;
 };
 
-static struct scene_frame frames[MAX_FRAMES];
+static struct scene_case frames[MAX_FRAMES];
 static size_t frame_count;
 static struct engine *engine;
 static struct case_totals totals;
 
-static void add_plane(struct pursuit_frame_header *header, uint32_t role, uint32_t format)
-{
-	struct pursuit_plane *plane = &header->planes[header->plane_count++];
-	plane->role = role;
-	plane->format = format;
-	plane->width = WIDTH;
-	plane->height = HEIGHT;
-	if (role == PURSUIT_ROLE_COLOR)
-		plane->transfer.curve = PURSUIT_CURVE_SRGB;
-}
-
-static void fill_header(struct pursuit_frame_header *header, const struct scene_camera *camera, bool ui)
-{
-	header->frame_id = 1;
-	header->real_interval_ns = (uint64_t)(INTERVAL * 1e9);
-	header->motion_kind = PURSUIT_MOTION_BACKWARD;
-	header->depth_kind = PURSUIT_DEPTH_DEVICE;
-	header->near_distance = camera->near_distance;
-	header->far_distance = camera->far_distance;
-	add_plane(header, PURSUIT_ROLE_COLOR, PURSUIT_FORMAT_BGRA8);
-	add_plane(header, PURSUIT_ROLE_DEPTH, PURSUIT_FORMAT_DEPTH32F);
-	add_plane(header, PURSUIT_ROLE_MOTION, PURSUIT_FORMAT_RG32F);
-	if (ui)
-		add_plane(header, PURSUIT_ROLE_UI, PURSUIT_FORMAT_BGRA8);
-}
-
-/* Rows of 320 pixels are multiples of 64 bytes in all formats: planes are packed as scene_read() packs them. */
 static bool read_frame(struct scene *scene, const char *name, double time)
 {
-	const struct scene_request request = {.time = time, .time_previous = time - INTERVAL, .time_next = time + INTERVAL};
-	struct scene_frame *out = &frames[frame_count];
-	struct pursuit_frame_header *header = &out->frame.header;
-	struct scene_textures textures = {0};
-	struct scene_camera camera = {0};
-	struct error error;
-	if (!scene_render(scene, &request, &textures, &camera))
-		return false;
-	fill_header(header, &camera, textures.ui != 0);
-	const uint64_t bytes = frame_layout(header);
-	out->memory = reference_alloc(bytes, 1);
-	if (frame_validate(header, bytes, NULL, NULL, &error) != 0)
-		return false;
-	for (uint32_t i = 0; i < header->plane_count; i++)
-		out->frame.planes[i] = out->memory + header->planes[i].offset;
-	const struct scene_pixels pixels = {
-		.color = out->memory + header->planes[0].offset,
-		.depth = (float *)(void *)(out->memory + header->planes[1].offset),
-		.backward = (float *)(void *)(out->memory + header->planes[2].offset),
-		.ui = header->plane_count > 3 ? out->memory + header->planes[3].offset : NULL,
-	};
-	if (!scene_read(scene, &pixels))
-		return false;
+	const struct scene_moment moment = {WIDTH, HEIGHT, time, INTERVAL, true};
+	struct scene_case *out = &frames[frame_count];
 	out->scene = name;
 	out->time = time;
-	frame_count++;
-	return true;
+	if (scene_frame_read(&out->read, scene, &moment)) {
+		frame_count++;
+		return true;
+	}
+	scene_frame_finish(&out->read);
+	return false;
 }
 
 /* All frames are rendered, and the scenes' context is gone, before the engine makes its own. */
@@ -107,7 +62,7 @@ static bool render_scenes(void)
 	return true;
 }
 
-static void run(const struct scene_frame *frame, size_t variant)
+static void run(const struct scene_case *frame, size_t variant)
 {
 	static const struct engine_request thirds[] = {
 		{ENGINE_SHOW_REAL, 0.0}, {ENGINE_SHOW_IN_BETWEEN, 1.0 / 3}, {ENGINE_SHOW_IN_BETWEEN, 2.0 / 3}};
@@ -125,7 +80,7 @@ static void run(const struct scene_frame *frame, size_t variant)
 		.requests = variant == 1 ? shifted : thirds,
 		.request_count = 3};
 	snprintf(name, sizeof(name), "%s at %g s, blur %d", frame->scene, frame->time, blurs[variant]);
-	CHECK(engine_case_run(engine, &frame->frame, &what, &totals));
+	CHECK(engine_case_run(engine, &frame->read.frame, &what, &totals));
 }
 
 static void test_scenes(void)
@@ -164,6 +119,6 @@ int main(int argc, char **argv)
 	RUN(test_shares);
 	engine_destroy(&engine);
 	for (size_t i = 0; i < frame_count; i++)
-		free(frames[i].memory);
+		scene_frame_finish(&frames[i].read);
 	return test_result();
 }
