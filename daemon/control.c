@@ -344,6 +344,12 @@ static void on_record(struct control *control, const struct request *request)
 {
 	struct error error = {""};
 	const char *unfit = unfit_for_recording(request->fd);
+	if (!server_is_owner(control->server, request->client_id)) {
+		if (request->fd >= 0)
+			close(request->fd);
+		reply(control, request, EPERM, "record: the daemon's own user or root only may record what others show");
+		return;
+	}
 	if (unfit || control->recording || control->closing.running) {
 		if (request->fd >= 0)
 			close(request->fd);
@@ -356,6 +362,10 @@ static void on_record(struct control *control, const struct request *request)
 
 static void on_record_stop(struct control *control, const struct request *request)
 {
+	if (!server_is_owner(control->server, request->client_id)) {
+		reply(control, request, EPERM, "record-stop: the daemon's own user or root only may end a recording");
+		return;
+	}
 	if (!control->recording) {
 		reply(control, request, EINVAL, "record-stop: nothing is being recorded");
 		return;

@@ -122,6 +122,8 @@ static void test_strangers_change_no_limits(void)
 										  "set allow-users=54331",
 										  "set blur=off max-clients=1",
 										  "set log-level=error",
+										  "record",
+										  "record-stop",
 										  "key q",
 										  "key escape"};
 	static struct raw_reply reply;
