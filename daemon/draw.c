@@ -294,7 +294,8 @@ static int queue_real(struct render *render, struct presenter_image *image, stru
 		render_follow_grid(render); /* it may have changed without a flip that would have told */
 		showing_plan(&render->showing, *vblank, SHOWING_REAL);
 		pacer_missed(&render->pacer, decision);
-		*vblank = render_first_vblank(render);
+		const uint64_t first = render_first_vblank(render);
+		*vblank = first > *vblank ? first : *vblank + 1; /* never the same one again, whatever the grid says */
 		const double phase = decision->phase;
 		*decision = pacer_decide(&render->pacer, *vblank);
 		decision->phase = phase;
