@@ -22,7 +22,7 @@
 #define VERSION(major, minor, patch) TEXT(major) "." TEXT(minor) "." TEXT(patch)
 
 /* What the shim passes on of enum pursuit_frame_flag; other bits are not the caller's to set. */
-#define CALLER_FLAGS                                                                                     \
+#define CALLER_FLAGS                                                                                    \
 	(PURSUIT_FRAME_CUT | PURSUIT_FRAME_MOTION_INVALID | PURSUIT_FRAME_MATRICES | PURSUIT_FRAME_JITTER | \
 	 PURSUIT_FRAME_DAMAGE)
 
@@ -320,8 +320,7 @@ uint64_t pursuit_next_start(struct pursuit_stream *stream)
 	uint64_t now_ns = clock_now();
 	uint64_t next_id = stream->last_id + 1;
 	step(stream, now_ns);
-	uint64_t start_ns =
-		stream->shared ? shim_pace_start(&stream->pace, stream->shared->control, next_id, now_ns) : 0;
+	uint64_t start_ns = stream->shared ? shim_pace_start(&stream->pace, stream->shared->control, next_id, now_ns) : 0;
 	shim_pace_begin(&stream->pace, next_id, start_ns > now_ns ? start_ns : now_ns);
 	return start_ns;
 }
@@ -381,8 +380,7 @@ void pursuit_get_status(struct pursuit_stream *stream, struct pursuit_status *st
 	status->attaches = stream->attaches;
 	status->bytes_copied = stream->bytes_copied;
 	status->refresh_hz = stream->attach.refresh_hz;
-	status->background =
-		stream->shared && __atomic_load_n(&stream->shared->control->background, __ATOMIC_ACQUIRE) != 0;
+	status->background = stream->shared && __atomic_load_n(&stream->shared->control->background, __ATOMIC_ACQUIRE) != 0;
 	memcpy(status->message, stream->attach.message, sizeof(status->message));
 }
 

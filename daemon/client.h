@@ -49,7 +49,7 @@ struct client {
 
 /* Takes the fd over. NULL: no memory. */
 struct client *client_create(const struct server_params *params, struct packet *packet, int fd, const struct peer *peer,
-                             uint64_t id);
+							 uint64_t id);
 /* Closes the connection and ends its streams. */
 void client_destroy(struct client **client);
 
@@ -59,7 +59,7 @@ void client_read(struct client *client, uint32_t events);
 /* Sends; a full socket or a broken one sets `gone`. */
 void client_send(struct client *client, const void *message, size_t bytes, int fd);
 void client_refuse(struct client *client, uint32_t serial, uint64_t stream_id, bool fatal,
-                   const struct refusal *refusal);
+				   const struct refusal *refusal);
 
 struct client_stream *client_find_stream(struct client *client, uint64_t stream_id);
 /* Says STREAM_CLOSED (serial 0: unasked). */

@@ -17,7 +17,8 @@ struct error {
 };
 
 /* Fills the sentence and gives `code` (a negative errno) back: return error_set(e, -EINVAL, "..."). */
-__attribute__((format(printf, 3, 4))) static inline int error_set(struct error *error, int code, const char *format, ...)
+__attribute__((format(printf, 3, 4))) static inline int error_set(struct error *error, int code, const char *format,
+																  ...)
 {
 	va_list arguments;
 	va_start(arguments, format);

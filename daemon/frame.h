@@ -17,10 +17,10 @@
 #include "proto/frame.h"
 
 struct frame {
-	struct pursuit_frame_header header; /* validated by frame_validate() */
+	struct pursuit_frame_header header;        /* validated by frame_validate() */
 	const uint8_t *planes[PURSUIT_MAX_PLANES]; /* first row of planes[i] of the header; borrowed */
-	bool volatile_memory; /* another process may change the planes while they are read */
-	uint64_t intake_ns; /* CLOCK_MONOTONIC, 0 unknown */
+	bool volatile_memory;                      /* another process may change the planes while they are read */
+	uint64_t intake_ns;                        /* CLOCK_MONOTONIC, 0 unknown */
 	/* The sequence that it belongs to: damage counts only against a frame of the same one. 0: damage is not used. */
 	uint64_t stream;
 };
@@ -43,7 +43,7 @@ struct frame {
  * 32 bits) name the culprit.
  */
 int frame_validate(struct pursuit_frame_header *header, uint64_t planes_bytes, const char **field, uint64_t *value,
-                   struct error *error);
+				   struct error *error);
 
 /* Index of the plane with that role in the header, -1 if there is none. */
 int frame_find_plane(const struct pursuit_frame_header *header, uint32_t role);

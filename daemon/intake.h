@@ -27,22 +27,22 @@
 
 /* What main may read while the render thread counts. */
 struct stream_counters {
-	_Atomic uint64_t real_frames;    /* taken and valid */
+	_Atomic uint64_t real_frames; /* taken and valid */
 	_Atomic uint64_t refused_frames;
-	_Atomic uint64_t lost_frames;    /* ids that were never seen, and frames replaced by a newer one */
+	_Atomic uint64_t lost_frames; /* ids that were never seen, and frames replaced by a newer one */
 	_Atomic uint64_t last_frame_id;
 	_Atomic uint32_t width, height;
-	_Atomic uint64_t interval_ns;    /* between frames' times, 0 unknown */
+	_Atomic uint64_t interval_ns; /* between frames' times, 0 unknown */
 };
 
 struct stream {
 	atomic_uint references;
-	uint64_t client_id;  /* the server's number of the connection */
-	uint64_t stream_id;  /* the client's */
+	uint64_t client_id; /* the server's number of the connection */
+	uint64_t stream_id; /* the client's */
 	char client_name[64];
-	int wake_fd;         /* eventfd; the client writes, nobody reads */
+	int wake_fd;              /* eventfd; the client writes, nobody reads */
 	_Atomic uint64_t wake_ns; /* when main saw the last wake-up */
-	atomic_bool ended;   /* nothing is taken any more */
+	atomic_bool ended;        /* nothing is taken any more */
 	struct stream_counters counters;
 
 	struct pursuit_shm_control *control;
@@ -70,7 +70,7 @@ struct stream_params {
  * the caller's. One reference. NULL with a refusal.
  */
 struct stream *stream_create(const struct stream_params *params, int control_fd, int planes_fd,
-                             struct refusal *refusal);
+							 struct refusal *refusal);
 struct stream *stream_reference(struct stream *stream);
 /* Clears *stream; NULL accepted. */
 void stream_release(struct stream **stream);

@@ -13,8 +13,8 @@
 #include "daemon/error.h"
 
 struct listener {
-	int fd;        /* nonblocking; -1: none */
-	int lock_fd;   /* path.lock, held as long as the socket exists; -1: activated */
+	int fd;      /* nonblocking; -1: none */
+	int lock_fd; /* path.lock, held as long as the socket exists; -1: activated */
 	char path[108];
 };
 

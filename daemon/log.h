@@ -34,7 +34,7 @@ void log_set_level(struct log *log, enum log_level level);
 
 /* Keeps errno. A NULL log is silent. */
 __attribute__((format(printf, 3, 4))) void log_print(const struct log *log, enum log_level level, const char *format,
-                                                     ...);
+													 ...);
 
 #define log_error(log, ...) log_print(log, LOG_LEVEL_ERROR, __VA_ARGS__)
 #define log_warning(log, ...) log_print(log, LOG_LEVEL_WARNING, __VA_ARGS__)

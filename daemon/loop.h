@@ -33,7 +33,7 @@ void loop_remove(struct loop_source **source);
 
 /* Blocks these signals in this thread (and those that it starts later) and reports them. 0 or -errno. */
 int loop_add_signals(struct loop *loop, const int *numbers, unsigned count, loop_signal_callback callback, void *data,
-                     struct error *error);
+					 struct error *error);
 
 /* Runs until loop_quit(). 0 or -errno with a sentence. */
 int loop_run(struct loop *loop, struct error *error);

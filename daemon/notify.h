@@ -31,7 +31,7 @@ struct watchdog;
 
 /* *watchdog is NULL if the manager wants none ($WATCHDOG_USEC, $WATCHDOG_PID). 0 or -errno with a sentence. */
 int watchdog_create(struct watchdog **watchdog, struct loop *loop, const struct log *log, struct output *output,
-                    struct error *error);
+					struct error *error);
 /* NULL accepted. */
 void watchdog_destroy(struct watchdog **watchdog);
 

@@ -56,11 +56,13 @@ static const char *const log_choices[] = {"error", "warning", "info", "debug", N
 static const struct option_row rows[] = {
 	TEXT(method, "method", OPTION_ENGINE, "pursuit",
 		 "How displayed frames are made from real ones. An unknown name is answered with the list."),
-	TEXT(context, "context", OPTION_ENGINE, "auto", "Where the engine runs: auto, egl, egl-device:INDEX, osmesa or cpu."),
+	TEXT(context, "context", OPTION_ENGINE, "auto",
+		 "Where the engine runs: auto, egl, egl-device:INDEX, osmesa or cpu."),
 	FLAG(gles, "gles", OPTION_ENGINE, "no", "Use OpenGL ES 3.1 instead of OpenGL 4.3 core."),
-	NUMBER(threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
-		   "Threads that the engine draws with where it runs on the CPU; 0: one for each processor that it may run on, at "
-		   "most 8."),
+	NUMBER(
+		threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
+		"Threads that the engine draws with where it runs on the CPU; 0: one for each processor that it may run on, at "
+		"most 8."),
 	CHOICE(motion_model, "motion-model", OPTION_ENGINE, "linear", motion_model_choices,
 		   "How the methods with a grid continue motion: straight on, or with its change since the frame before."),
 	CHOICE(blur, "blur", OPTION_ENGINE, "doubtful", blur_choices,
@@ -77,7 +79,8 @@ static const struct option_row rows[] = {
 		 "From the eye to the display."),
 	REAL(gamma, "gamma", OPTION_ENGINE, "0", 0, 5, "", "Gamma of the display, 1 to 5; 0 is the sRGB curve."),
 	NUMBER(level, "level", OPTION_ENGINE, "0", 0, 4, "",
-		   "What is left out to save time: 0 nothing, 1 fine cells, 2 blur and boost too, 3 every second in-between, 4 all "
+		   "What is left out to save time: 0 nothing, 1 fine cells, 2 blur and boost too, 3 every second in-between, 4 "
+		   "all "
 		   "of them. With the governor the level that it never goes below, else fixed."),
 	CHOICE(governor, "governor", OPTION_OUTPUT, "auto", governor_choices,
 		   "Raise the level when the work for a real frame does not fit into its vblanks, and lower it again."),
@@ -139,9 +142,10 @@ static const struct option_row rows[] = {
 		   "Light comes no sooner after its flip."),
 	NUMBER(lab.photon_most_us, "photon-most-us", OPTION_LAB, "0", 0, 2000000, "us",
 		   "Light comes sooner than this after its flip; 0: a refresh after photon-least-us, two with a patch."),
-	CHOICE(lab.patch, "patch", OPTION_LAB, "off", patch_choices,
-		   "Square for a photodiode in the picture: alternates black and white, or follows the sequence that identifies "
-		   "each frame."),
+	CHOICE(
+		lab.patch, "patch", OPTION_LAB, "off", patch_choices,
+		"Square for a photodiode in the picture: alternates black and white, or follows the sequence that identifies "
+		"each frame."),
 	CHOICE(lab.patch_corner, "patch-corner", OPTION_LAB, "bottom-left", corner_choices, "Corner of the patch."),
 	NUMBER(lab.patch_size, "patch-size", OPTION_LAB, "48", 4, 4096, "px", "Edge of the patch."),
 	TEXT(socket, "socket", OPTION_DAEMON, "",

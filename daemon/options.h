@@ -27,41 +27,41 @@ struct settings {
 	uint32_t threads;      /* of the CPU executor; 0: as many as we may run on, at most 8 */
 	uint32_t motion_model; /* enum engine_motion_model */
 	uint32_t blur;         /* enum engine_blur */
-	bool compensation;   /* default true */
+	bool compensation;     /* default true */
 	uint32_t cell;
 	uint32_t blur_level;
-	double snap_threshold;      /* pixels, a multiple of 1/4 */
+	double snap_threshold; /* pixels, a multiple of 1/4 */
 	double display_width_mm;
 	double viewing_distance_mm;
-	double gamma;               /* 0: sRGB */
-	uint32_t level;             /* of the governor (governor.h): fixed, or the least */
+	double gamma;   /* 0: sRGB */
+	uint32_t level; /* of the governor (governor.h): fixed, or the least */
 	/* output */
 	uint32_t governor;          /* 0 auto, 1 off */
 	char present[128];          /* comma-separated list of presenters, tried in turn */
 	uint64_t refresh_numerator; /* --refresh 120, 119.88, 120000/1001 */
 	uint64_t refresh_denominator;
-	char monitor[64];           /* "": the primary one */
+	char monitor[64]; /* "": the primary one */
 	bool fullscreen;
-	uint32_t window_width;      /* 0: as the first picture */
+	uint32_t window_width; /* 0: as the first picture */
 	uint32_t window_height;
-	char connector[32];         /* "": the first that is connected */
-	char mode[32];              /* WxH@R; "": chosen by the refresh rate */
-	char tee[512];              /* "": what is shown is not recorded */
-	char kms_device[104];       /* "": the first with a display */
+	char connector[32];   /* "": the first that is connected */
+	char mode[32];        /* WxH@R; "": chosen by the refresh rate */
+	char tee[512];        /* "": what is shown is not recorded */
+	char kms_device[104]; /* "": the first with a display */
 	struct lab_settings lab;
 	/* daemon */
-	char socket[104];           /* "": the default path */
-	char record[512];           /* "": do not record */
-	char stats[512];            /* "": no statistics file at the end */
+	char socket[104]; /* "": the default path */
+	char record[512]; /* "": do not record */
+	char stats[512];  /* "": no statistics file at the end */
 	uint32_t max_clients;
-	uint32_t max_frame_mb;      /* largest slot that a client may offer */
-	uint32_t max_streams;       /* of one client */
-	uint32_t max_client_mb;     /* shared memory of one client, all its streams together */
-	uint32_t max_messages;      /* of one client in a second */
-	char allow_users[256];      /* peer.h; both empty: everybody */
+	uint32_t max_frame_mb;  /* largest slot that a client may offer */
+	uint32_t max_streams;   /* of one client */
+	uint32_t max_client_mb; /* shared memory of one client, all its streams together */
+	uint32_t max_messages;  /* of one client in a second */
+	char allow_users[256];  /* peer.h; both empty: everybody */
 	char allow_groups[256];
 	bool seccomp;
-	uint32_t log_level;         /* 0 error, 1 warning, 2 info, 3 debug */
+	uint32_t log_level; /* 0 error, 1 warning, 2 info, 3 debug */
 };
 
 enum option_type {
@@ -82,16 +82,16 @@ enum option_group {
 };
 
 struct option_row {
-	const char *name;          /* with dashes, as on the command line */
+	const char *name; /* with dashes, as on the command line */
 	enum option_group group;
 	enum option_type type;
 	size_t offset;             /* in struct settings */
 	size_t size;               /* of the text field */
 	const char *default_value; /* as it would be written */
 	double min, max;
-	const char *unit;          /* "mm", "px", "Hz", "" */
+	const char *unit;           /* "mm", "px", "Hz", "" */
 	const char *const *choices; /* NULL-terminated */
-	const char *help;          /* one or two sentences */
+	const char *help;           /* one or two sentences */
 };
 
 /* The table, ended by a row without name. Static. */
@@ -120,7 +120,7 @@ int settings_load(struct settings *settings, const char *path, struct error *err
  * argument used), 0 not ours, negative errno with a sentence.
  */
 int settings_argument(struct settings *settings, unsigned group_mask, int argc, char **argv, int *index,
-                      struct error *error);
+					  struct error *error);
 
 /* Help lines of the rows of these groups; the commented default configuration file. */
 void settings_print_help(unsigned group_mask, FILE *out);

@@ -48,7 +48,7 @@ struct output_event {
 };
 
 struct output_params {
-	struct loop *loop; /* main's */
+	struct loop *loop;               /* main's */
 	const struct settings *settings; /* must live as long */
 	struct clock *clock;
 	const struct log *log;
@@ -61,7 +61,7 @@ struct output_info {
 	char presenter[32]; /* "none": lost, and no other works */
 	char renderer[128], context[32];
 	bool software;
-	struct grid grid; /* as it is now */
+	struct grid grid;                       /* as it is now */
 	enum presenter_time_source time_source; /* of the last flip */
 };
 
@@ -93,7 +93,8 @@ void output_wake(struct output *output);
 int output_event_fd(const struct output *output);
 bool output_next_event(struct output *output, struct output_event *event);
 
-/* The engine's settings, governor and level from the next real frame on; checked already (live.h). Others are ignored. */
+/* The engine's settings, governor and level from the next real frame on; checked already (live.h). Others are ignored.
+ */
 void output_set_settings(struct output *output, const struct settings *settings);
 /* Switches a part of the view (VIEW_...) on or off. */
 void output_toggle_view(struct output *output, uint32_t part);

@@ -20,7 +20,7 @@
 /* 64 KiB and more: not for the stack. */
 struct packet {
 	size_t bytes;
-	bool too_long;  /* longer than PURSUIT_WIRE_MAX_PACKET */
+	bool too_long; /* longer than PURSUIT_WIRE_MAX_PACKET */
 	bool fds_lost;
 	int fds[PACKET_FDS]; /* close-on-exec; the packet's until taken */
 	uint32_t fd_count;

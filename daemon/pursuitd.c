@@ -150,8 +150,7 @@ static void reload(struct pursuitd *daemon)
 	if (read_arguments(&fresh, daemon->argc, daemon->argv) >= 0)
 		log_error(&daemon->log, "SIGHUP: the settings stay as they are");
 	else
-		log_info(&daemon->log, "SIGHUP: settings read again, %u changed",
-				 live_reload(&daemon->live, &fresh));
+		log_info(&daemon->log, "SIGHUP: settings read again, %u changed", live_reload(&daemon->live, &fresh));
 	notify_ready(&daemon->log);
 }
 
@@ -235,13 +234,13 @@ static int start(struct pursuitd *daemon, struct error *error)
 	if (!daemon->output)
 		return -1;
 	daemon->live = (struct live){&daemon->settings, daemon->output, &daemon->log};
-	const struct control_params control_params = {daemon->loop,      &daemon->log,   &daemon->clock,
-												  &daemon->settings, daemon->output, daemon->lab,
-												  &daemon->live};
+	const struct control_params control_params = {daemon->loop,   &daemon->log, &daemon->clock, &daemon->settings,
+												  daemon->output, daemon->lab,  &daemon->live};
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
 		return -1;
-	daemon->keyboard = (struct keyboard){.loop = daemon->loop, .log = &daemon->log, .output = daemon->output, .live = &daemon->live};
+	daemon->keyboard =
+		(struct keyboard){.loop = daemon->loop, .log = &daemon->log, .output = daemon->output, .live = &daemon->live};
 	const struct server_params server_params = {daemon->loop,      &daemon->log,   &daemon->clock,
 												&daemon->settings, daemon->output, control_handle,
 												daemon->control,   keyboard_press, &daemon->keyboard};

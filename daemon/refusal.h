@@ -21,9 +21,8 @@ struct refusal {
 };
 
 /* Gives `result` (a negative errno) back. */
-__attribute__((format(printf, 6, 7))) static inline int refuse(struct refusal *refusal, int result, uint32_t code,
-                                                               const char *field, uint64_t value, const char *format,
-                                                               ...)
+__attribute__((format(printf, 6, 7))) static inline int
+refuse(struct refusal *refusal, int result, uint32_t code, const char *field, uint64_t value, const char *format, ...)
 {
 	va_list arguments;
 	refusal->code = code;

@@ -98,7 +98,8 @@ static void say_changes(struct render *render, const struct settings *settings)
 
 void render_set_settings(struct render *render, const struct settings *settings)
 {
-	const bool governor = settings->governor != render->settings->governor || settings->level != render->settings->level;
+	const bool governor =
+		settings->governor != render->settings->governor || settings->level != render->settings->level;
 	say_changes(render, settings);
 	*render->settings = *settings;
 	if (governor)
@@ -340,7 +341,8 @@ static uint64_t show_between(struct render *render, uint64_t now_ns, bool urgent
 		if (now_ns + render->between_cost.usual_ns + render->lead_ns <= decision.target_ns)
 			draw_in_between(render, &decision, vblank);
 		else
-			cost_add(&render->between_cost, render->between_cost.usual_ns / 8 * 7); /* or it would never be tried again */
+			cost_add(&render->between_cost,
+					 render->between_cost.usual_ns / 8 * 7); /* or it would never be tried again */
 	}
 	return 0;
 }

@@ -46,40 +46,40 @@ struct render {
 	struct render_owner owner;
 	struct engine *engine;
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
-	struct presenter *presenter; /* the display's; NULL: lost */
+	struct presenter *presenter;               /* the display's; NULL: lost */
 	struct grid grid;
 	uint64_t lead_ns; /* that the presenter wants pictures before their vblank */
 	struct pacer pacer;
 	struct showing showing;
-	struct lab *lab;     /* NULL: none */
+	struct lab *lab; /* NULL: none */
 	struct view view;
 	struct tee *tee;       /* NULL: none */
 	bool settings_changed; /* the engine does not know yet */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
-	struct stats *stats; /* the owner's; only this thread touches them */
+	struct stats *stats;   /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
 
-	struct frame frame;    /* begun last */
+	struct frame frame;     /* begun last */
 	uint64_t take_again_ns; /* after a refused frame: one look a vblank is enough for a client that sends nonsense */
 	uint64_t hold_until_ns; /* a frame that came too early for a vblank of its own is not begun before */
-	bool begun;            /* the engine has it */
-	bool report_due;       /* the engine's report about it was not counted yet */
-	bool boosted;          /* it gives light that in-betweens take away */
-	bool still;            /* its in-betweens look like itself */
+	bool begun;             /* the engine has it */
+	bool report_due;        /* the engine's report about it was not counted yet */
+	bool boosted;           /* it gives light that in-betweens take away */
+	bool still;             /* its in-betweens look like itself */
 	bool standby_done;
-	bool front_plain;      /* the picture queued last may stay for good */
+	bool front_plain; /* the picture queued last may stay for good */
 	uint64_t group, serial;
 	uint32_t n;
-	uint64_t real_vblank;  /* of its first showing */
-	uint64_t next_vblank;  /* first one that was not decided */
+	uint64_t real_vblank;   /* of its first showing */
+	uint64_t next_vblank;   /* first one that was not decided */
 	uint32_t pause_vblanks; /* that nothing was due at, in a row */
-	bool paused;           /* the presenter sleeps */
+	bool paused;            /* the presenter sleeps */
 	struct cost real_cost, between_cost, plain_cost;
 	struct governor governor;
-	bool passes_through;    /* the engine makes nothing of frames but a picture */
-	uint64_t work_ns;       /* drawing since the last real frame began */
-	uint64_t late_counted;  /* late in-betweens that the governor knows of */
-	uint64_t margin_ns; /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
+	bool passes_through;   /* the engine makes nothing of frames but a picture */
+	uint64_t work_ns;      /* drawing since the last real frame began */
+	uint64_t late_counted; /* late in-betweens that the governor knows of */
+	uint64_t margin_ns;    /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
 };
 
 void render_finish(struct render *render);
@@ -103,7 +103,8 @@ void render_skip_frames(struct render *render, struct stream *stream);
 /* A vblank is over. */
 void render_flip(struct render *render, const struct presenter_flip *flip);
 
-/* Does one thing, or nothing. The time when the next step is due: 0 at once, RENDER_NEVER only when something happens. */
+/* Does one thing, or nothing. The time when the next step is due: 0 at once, RENDER_NEVER only when something happens.
+ */
 uint64_t render_step(struct render *render);
 
 /* Nothing is due at the vblanks from next_vblank to before this one. */

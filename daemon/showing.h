@@ -40,7 +40,7 @@ enum showing_plan {
 
 /* One real frame. */
 struct showing_frame {
-	uint64_t group; /* 0: free */
+	uint64_t group;        /* 0: free */
 	struct stream *stream; /* referenced */
 	struct pursuit_feedback report;
 	bool boosted; /* its first showing gives light that its in-betweens take away */
@@ -55,10 +55,10 @@ struct showing {
 	} plans[SHOWING_VBLANKS];
 	struct showing_frame frames[SHOWING_FRAMES];
 	uint64_t front_group;
-	uint64_t last_flip_ns; /* of the vblank before, if one was due then; otherwise 0 */
+	uint64_t last_flip_ns;   /* of the vblank before, if one was due then; otherwise 0 */
 	uint64_t next_submit_ns; /* hint that goes into reports */
-	bool pausing; /* an undecided vblank is no miss */
-	double period_ns; /* between vblanks, as known now */
+	bool pausing;            /* an undecided vblank is no miss */
+	double period_ns;        /* between vblanks, as known now */
 };
 
 void showing_init(struct showing *showing, struct stats *stats);

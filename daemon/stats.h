@@ -67,19 +67,19 @@ struct stats {
 	uint64_t lost_real_frames;  /* real frames that never were shown */
 	uint64_t received_frames;   /* taken from the streams and valid */
 	uint64_t refused_frames;
-	uint64_t vblanks_due;       /* vblanks at which a picture was due: all but pauses */
-	uint64_t vblanks_on_time;   /* of these, with the intended picture, ready before and shown before the next */
-	uint64_t late_flips;        /* the presenter itself was late by a vblank or more */
-	double vblank_ns;           /* the display's period as it is known now; 0 unknown */
-	uint64_t active_ns;         /* time over all vblanks due */
+	uint64_t vblanks_due;     /* vblanks at which a picture was due: all but pauses */
+	uint64_t vblanks_on_time; /* of these, with the intended picture, ready before and shown before the next */
+	uint64_t late_flips;      /* the presenter itself was late by a vblank or more */
+	double vblank_ns;         /* the display's period as it is known now; 0 unknown */
+	uint64_t active_ns;       /* time over all vblanks due */
 	uint64_t engine_losses;
 	uint64_t unbalanced_vblanks; /* late in-betweens of boosted real frames: light that was missed, not carried */
 	uint64_t flips_by_source[PRESENTER_TIME_SOURCES]; /* where their time stamps are from */
-	struct governor governor; /* as it is now */
+	struct governor governor;                         /* as it is now */
 	struct stats_spread engine_ms, submit_to_flip_ms, flip_error_ms;
 	struct stats_name passes[STATS_NAMES], left_out[STATS_NAMES];
 	uint32_t pass_count, left_out_count;
-	uint64_t timeline_count; /* ever; the newest are kept */
+	uint64_t timeline_count;                   /* ever; the newest are kept */
 	struct stats_row timeline[STATS_TIMELINE]; /* last: see stats_publish() */
 };
 
@@ -92,7 +92,8 @@ void stats_publish(const struct stats *stats, struct stats *copy);
 
 /* A JSON object with the figures by their names; the caller owns it. NULL: out of memory. */
 json_t *stats_json(const struct stats *stats);
-/* {"first", "rows": [[vblank, target, ready, flip, frame_id, show, phase], ...]}: at most count rows from row `from`. */
+/* {"first", "rows": [[vblank, target, ready, flip, frame_id, show, phase], ...]}: at most count rows from row `from`.
+ */
 json_t *stats_timeline_json(const struct stats *stats, uint64_t from, uint64_t count);
 
 #endif

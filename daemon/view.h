@@ -16,9 +16,9 @@
 struct render;
 
 /* Bits of what is switched on. */
-#define VIEW_HELP       1u
+#define VIEW_HELP 1u
 #define VIEW_STATISTICS 2u
-#define VIEW_SPLIT      4u
+#define VIEW_SPLIT 4u
 
 /* Zeroed: nothing is drawn. */
 struct view {

@@ -79,9 +79,9 @@ struct pursuit_plane {
 	uint32_t width;  /* pixels, 1 to PURSUIT_MAX_SIZE */
 	uint32_t height; /* pixels, 1 to PURSUIT_MAX_SIZE */
 	uint32_t reserved0;
-	uint64_t offset; /* bytes, a multiple of PURSUIT_PLANE_ALIGNMENT */
-	uint64_t stride; /* bytes, at least width x bytes per pixel, a multiple of the pixel size */
-	uint64_t size;   /* bytes, at least stride x (height - 1) + width x bytes per pixel */
+	uint64_t offset;                  /* bytes, a multiple of PURSUIT_PLANE_ALIGNMENT */
+	uint64_t stride;                  /* bytes, at least width x bytes per pixel, a multiple of the pixel size */
+	uint64_t size;                    /* bytes, at least stride x (height - 1) + width x bytes per pixel */
 	struct pursuit_transfer transfer; /* zero for planes that hold no colour */
 	uint64_t reserved1;
 };

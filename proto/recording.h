@@ -31,7 +31,7 @@
 
 #include "frame.h"
 
-#define PURSUIT_RECORDING_MAGIC UINT64_C(0x0a1a0d0a54495550)     /* "PUIT\n\r\x1a\n" */
+#define PURSUIT_RECORDING_MAGIC UINT64_C(0x0a1a0d0a54495550)       /* "PUIT\n\r\x1a\n" */
 #define PURSUIT_RECORDING_CHUNK_MAGIC UINT64_C(0x4b4e484354495550) /* "PUITCHNK" */
 #define PURSUIT_RECORDING_VERSION 1u
 
@@ -47,7 +47,7 @@
 struct pursuit_recording_header {
 	uint64_t magic;
 	uint32_t version;
-	uint32_t header_bytes; /* 32; a reader skips what is beyond the part that it knows */
+	uint32_t header_bytes;    /* 32; a reader skips what is beyond the part that it knows */
 	uint64_t created_unix_ns; /* CLOCK_REALTIME, 0 unknown */
 	uint64_t reserved;
 };
@@ -57,10 +57,10 @@ struct pursuit_chunk_header {
 	uint64_t magic;
 	uint32_t type;
 	uint32_t compression;
-	uint64_t stored_bytes; /* of the payload in the file, padding not counted */
-	uint64_t raw_bytes;    /* of the payload after decompression */
-	uint64_t sequence;     /* 0, 1, 2, ... in the file */
-	uint64_t time_ns;      /* when the event reached the recorder, CLOCK_MONOTONIC; 0 unknown */
+	uint64_t stored_bytes;     /* of the payload in the file, padding not counted */
+	uint64_t raw_bytes;        /* of the payload after decompression */
+	uint64_t sequence;         /* 0, 1, 2, ... in the file */
+	uint64_t time_ns;          /* when the event reached the recorder, CLOCK_MONOTONIC; 0 unknown */
 	uint64_t payload_checksum; /* of the stored bytes */
 	uint64_t header_checksum;  /* of the 56 bytes before this field */
 };

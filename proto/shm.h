@@ -80,10 +80,11 @@ struct pursuit_feedback {
  * `sequence` rises by two with each hint and is odd while one is written; 0: there was none.
  */
 struct pursuit_hint {
-	uint64_t sequence;       /* atomic */
-	uint64_t frame_id;       /* of the real frame that was drawn last */
-	uint64_t next_submit_ns; /* publish the frame after it by then, to be shown at the next vblank expected; 0: unknown */
-	uint64_t interval_ns;    /* T as the pacer knows it; 0: unknown */
+	uint64_t sequence; /* atomic */
+	uint64_t frame_id; /* of the real frame that was drawn last */
+	uint64_t
+		next_submit_ns;   /* publish the frame after it by then, to be shown at the next vblank expected; 0: unknown */
+	uint64_t interval_ns; /* T as the pacer knows it; 0: unknown */
 };
 
 /* The control page. 16384 bytes, mapped whole. */
@@ -96,7 +97,7 @@ struct pursuit_shm_control {
 	uint8_t reserved1[40];
 	uint32_t latest; /* atomic: slot index | PURSUIT_SLOT_FRESH; a cache line of its own */
 	uint32_t reserved2[15];
-	uint64_t feedback_count; /* atomic: reports written so far */
+	uint64_t feedback_count;  /* atomic: reports written so far */
 	struct pursuit_hint hint; /* written by the daemon */
 	uint32_t background;      /* atomic, written by the daemon: 1 while another stream is shown instead of this one */
 	uint32_t reserved3;

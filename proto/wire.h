@@ -92,25 +92,25 @@ struct pursuit_message_welcome {
 };
 
 /* struct pursuit_message_refused.code */
-#define PURSUIT_REFUSED_VERSION 1u  /* no common version */
-#define PURSUIT_REFUSED_MESSAGE 2u  /* malformed packet */
-#define PURSUIT_REFUSED_MEMORY 3u   /* memfd unsealed, short, or of the wrong kind */
-#define PURSUIT_REFUSED_VALUE 4u    /* a field out of range */
-#define PURSUIT_REFUSED_IN_USE 5u   /* stream id already open */
-#define PURSUIT_REFUSED_LIMIT 6u    /* too many clients, streams or bytes */
-#define PURSUIT_REFUSED_FRAME 7u    /* a frame header in shared memory was invalid */
-#define PURSUIT_REFUSED_SHUTDOWN 8u /* the daemon is stopping */
+#define PURSUIT_REFUSED_VERSION 1u    /* no common version */
+#define PURSUIT_REFUSED_MESSAGE 2u    /* malformed packet */
+#define PURSUIT_REFUSED_MEMORY 3u     /* memfd unsealed, short, or of the wrong kind */
+#define PURSUIT_REFUSED_VALUE 4u      /* a field out of range */
+#define PURSUIT_REFUSED_IN_USE 5u     /* stream id already open */
+#define PURSUIT_REFUSED_LIMIT 6u      /* too many clients, streams or bytes */
+#define PURSUIT_REFUSED_FRAME 7u      /* a frame header in shared memory was invalid */
+#define PURSUIT_REFUSED_SHUTDOWN 8u   /* the daemon is stopping */
 #define PURSUIT_REFUSED_PERMISSION 9u /* this user may not be a client */
 
 /* 256 bytes. */
 struct pursuit_message_refused {
 	struct pursuit_message header;
-	uint32_t code; /* PURSUIT_REFUSED_* */
-	uint32_t fatal; /* 1: the daemon closes the connection after this */
+	uint32_t code;      /* PURSUIT_REFUSED_* */
+	uint32_t fatal;     /* 1: the daemon closes the connection after this */
 	uint64_t stream_id; /* 0: not about a stream */
-	uint64_t value; /* what was found in the field */
-	char field[56]; /* the name of the field, "" if none */
-	char text[160]; /* one sentence for a person */
+	uint64_t value;     /* what was found in the field */
+	char field[56];     /* the name of the field, "" if none */
+	char text[160];     /* one sentence for a person */
 };
 
 /* struct pursuit_message_open_stream.flags */
@@ -119,7 +119,7 @@ struct pursuit_message_refused {
 /* 64 bytes, with the two memfds. */
 struct pursuit_message_open_stream {
 	struct pursuit_message header;
-	uint64_t stream_id; /* chosen by the client, unique on its connection, not 0 */
+	uint64_t stream_id;  /* chosen by the client, unique on its connection, not 0 */
 	uint32_t slot_count; /* PURSUIT_MIN_SLOTS to PURSUIT_MAX_SLOTS */
 	uint32_t flags;      /* PURSUIT_OPEN_*, or-ed */
 	uint64_t slot_bytes; /* a multiple of 4096 */
@@ -151,7 +151,7 @@ struct pursuit_message_key {
 	struct pursuit_message header;
 	uint64_t stream_id;
 	uint64_t time_ns; /* CLOCK_MONOTONIC */
-	uint32_t code;    /* Unicode code point of what is printed on the key, lower case; 27 escape; or PURSUIT_KEY_CLOSE */
+	uint32_t code; /* Unicode code point of what is printed on the key, lower case; 27 escape; or PURSUIT_KEY_CLOSE */
 	uint32_t reserved0;
 	uint64_t reserved1;
 };

@@ -22,60 +22,60 @@ struct test_state {
 
 static struct test_state test_state;
 
-#define CHECK(condition)                                                                      \
-	do {                                                                                      \
-		test_state.checks++;                                                                  \
-		if (!(condition)) {                                                                   \
-			test_state.failed++;                                                              \
+#define CHECK(condition)                                                                            \
+	do {                                                                                            \
+		test_state.checks++;                                                                        \
+		if (!(condition)) {                                                                         \
+			test_state.failed++;                                                                    \
 			fprintf(stderr, "%s:%d: %s: not true: %s\n", __FILE__, __LINE__, __func__, #condition); \
-		}                                                                                     \
+		}                                                                                           \
 	} while (0)
 
-#define CHECK_INT(got, want)                                                                  \
-	do {                                                                                      \
-		long long got_ = (long long)(got), want_ = (long long)(want);                         \
-		test_state.checks++;                                                                  \
-		if (got_ != want_) {                                                                  \
-			test_state.failed++;                                                              \
+#define CHECK_INT(got, want)                                                                                       \
+	do {                                                                                                           \
+		long long got_ = (long long)(got), want_ = (long long)(want);                                              \
+		test_state.checks++;                                                                                       \
+		if (got_ != want_) {                                                                                       \
+			test_state.failed++;                                                                                   \
 			fprintf(stderr, "%s:%d: %s: %s is %lld, not %lld\n", __FILE__, __LINE__, __func__, #got, got_, want_); \
-		}                                                                                     \
+		}                                                                                                          \
 	} while (0)
 
-#define CHECK_NEAR(got, want, tolerance)                                                      \
-	do {                                                                                      \
-		double got_ = (double)(got), want_ = (double)(want), tolerance_ = (double)(tolerance); \
-		test_state.checks++;                                                                  \
-		if (!(fabs(got_ - want_) <= tolerance_)) {                                            \
-			test_state.failed++;                                                              \
-			fprintf(stderr, "%s:%d: %s: %s is %.9g, not %.9g within %.3g\n", __FILE__, __LINE__, __func__, #got, \
-			        got_, want_, tolerance_);                                                 \
-		}                                                                                     \
+#define CHECK_NEAR(got, want, tolerance)                                                                               \
+	do {                                                                                                               \
+		double got_ = (double)(got), want_ = (double)(want), tolerance_ = (double)(tolerance);                         \
+		test_state.checks++;                                                                                           \
+		if (!(fabs(got_ - want_) <= tolerance_)) {                                                                     \
+			test_state.failed++;                                                                                       \
+			fprintf(stderr, "%s:%d: %s: %s is %.9g, not %.9g within %.3g\n", __FILE__, __LINE__, __func__, #got, got_, \
+					want_, tolerance_);                                                                                \
+		}                                                                                                              \
 	} while (0)
 
-#define CHECK_STRING(got, want)                                                               \
-	do {                                                                                      \
-		const char *got_ = (got), *want_ = (want);                                            \
-		test_state.checks++;                                                                  \
-		if (!got_ || strcmp(got_, want_) != 0) {                                              \
-			test_state.failed++;                                                              \
+#define CHECK_STRING(got, want)                                                                          \
+	do {                                                                                                 \
+		const char *got_ = (got), *want_ = (want);                                                       \
+		test_state.checks++;                                                                             \
+		if (!got_ || strcmp(got_, want_) != 0) {                                                         \
+			test_state.failed++;                                                                         \
 			fprintf(stderr, "%s:%d: %s: %s is \"%s\", not \"%s\"\n", __FILE__, __LINE__, __func__, #got, \
-			        got_ ? got_ : "(null)", want_);                                           \
-		}                                                                                     \
+					got_ ? got_ : "(null)", want_);                                                      \
+		}                                                                                                \
 	} while (0)
 
-#define RUN(function)                                                                         \
-	do {                                                                                      \
-		int before_ = test_state.failed;                                                      \
-		function();                                                                           \
-		printf("%s %s\n", test_state.failed == before_ ? "ok    " : "FAILED", #function);     \
-		fflush(stdout);                                                                       \
+#define RUN(function)                                                                     \
+	do {                                                                                  \
+		int before_ = test_state.failed;                                                  \
+		function();                                                                       \
+		printf("%s %s\n", test_state.failed == before_ ? "ok    " : "FAILED", #function); \
+		fflush(stdout);                                                                   \
 	} while (0)
 
 /* Ends the program as skipped: something that the machine lacks, said plainly. */
-#define SKIP(reason)                                                                          \
-	do {                                                                                      \
-		printf("skipped: %s\n", reason);                                                      \
-		exit(77);                                                                             \
+#define SKIP(reason)                     \
+	do {                                 \
+		printf("skipped: %s\n", reason); \
+		exit(77);                        \
 	} while (0)
 
 static inline int test_result(void)

@@ -45,17 +45,17 @@ static void use_program(const struct scene *scene, enum stage_program program, d
 	gl->UseProgram(scene->programs[program]);
 	gl->Uniform1i(uniform(scene, program, "u_material"), 0);
 	gl->Uniform2f(uniform(scene, program, "u_motion_scale"), (float)(0.5 * scene->width * motion_sign),
-	              (float)(-0.5 * scene->height * motion_sign));
+				  (float)(-0.5 * scene->height * motion_sign));
 	gl->Uniform4f(uniform(scene, program, "u_sway"), (float)scene->now.sway[0], (float)scene->now.sway[1],
-	              (float)scene->other.sway[0], (float)scene->other.sway[1]);
+				  (float)scene->other.sway[0], (float)scene->other.sway[1]);
 	set_vec3(scene, program, "u_sun_direction", look->sun_direction);
 	set_vec3(scene, program, "u_sun_color", look->sun_color);
 	set_vec3(scene, program, "u_sky_color", look->sky_color);
 	set_vec3(scene, program, "u_bounce_color", look->bounce_color);
 	gl->Uniform4f(uniform(scene, program, "u_sway_size"), (float)look->sway_size.x, (float)look->sway_size.y,
-	              (float)look->sway_size.z, 0.0f);
+				  (float)look->sway_size.z, 0.0f);
 	gl->Uniform4f(uniform(scene, program, "u_haze"), (float)look->haze.x, (float)look->haze.y, (float)look->haze.z,
-	              (float)(1.0 / (look->haze_distance * look->haze_distance)));
+				  (float)(1.0 / (look->haze_distance * look->haze_distance)));
 }
 
 struct draw_uniforms {
@@ -63,7 +63,7 @@ struct draw_uniforms {
 };
 
 static void draw_range(const struct scene *scene, const struct stage_draw *draw, const struct draw_uniforms *at,
-                       const struct mat4 *now, const struct mat4 *other)
+					   const struct mat4 *now, const struct mat4 *other)
 {
 	const struct scene_gl *gl = &scene->gl;
 	const struct stage_range *range = &scene->ranges[draw->range];
@@ -78,7 +78,7 @@ static void draw_range(const struct scene *scene, const struct stage_draw *draw,
 		gl->Uniform4f(at->tint, 1.0f, 1.0f, 1.0f, 0.0f);
 	gl->Uniform1ui(at->id_base, draw->id_base);
 	gl->DrawElements(GL_TRIANGLES, (GLsizei)range->count, GL_UNSIGNED_INT,
-	                 (const void *)(uintptr_t)(range->first * sizeof(uint32_t)));
+					 (const void *)(uintptr_t)(range->first * sizeof(uint32_t)));
 }
 
 /* Clip position now (x, y, 1) to a direction in the world, for a point infinitely far away. */
@@ -115,7 +115,7 @@ static void draw_sky(const struct scene *scene, double motion_sign)
 	set_vec3(scene, STAGE_SKY, "u_zenith", look->zenith);
 	set_vec3(scene, STAGE_SKY, "u_sun_glow", look->sun_glow);
 	gl->Uniform4f(uniform(scene, STAGE_SKY, "u_clouds"), (float)look->clouds.x, (float)look->clouds.y,
-	              (float)look->clouds.z, (float)look->cloud_layer);
+				  (float)look->clouds.z, (float)look->cloud_layer);
 	gl->DepthFunc(GL_LEQUAL);
 	gl->DrawArrays(GL_TRIANGLES, 0, 3);
 }
@@ -163,8 +163,8 @@ void stage_draw_plan(const struct scene *scene, double motion_sign)
 			current = draw->program;
 			use_program(scene, current, motion_sign);
 			at = (struct draw_uniforms){uniform(scene, current, "u_now"), uniform(scene, current, "u_other"),
-			                            uniform(scene, current, "u_model"), uniform(scene, current, "u_draw_tint"),
-			                            uniform(scene, current, "u_id_base")};
+										uniform(scene, current, "u_model"), uniform(scene, current, "u_draw_tint"),
+										uniform(scene, current, "u_id_base")};
 		}
 		draw_range(scene, draw, &at, &now, &other);
 	}
@@ -188,7 +188,7 @@ void stage_draw_overlay(struct scene *scene)
 	gl->BindVertexArray(scene->overlay_array);
 	gl->BindBuffer(GL_ARRAY_BUFFER, scene->overlay_buffer);
 	gl->BufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(scene->overlay.count * sizeof(*scene->overlay.vertices)),
-	               scene->overlay.vertices, GL_STREAM_DRAW);
+				   scene->overlay.vertices, GL_STREAM_DRAW);
 	gl->UseProgram(scene->programs[STAGE_OVERLAY]);
 	gl->Uniform1i(uniform(scene, STAGE_OVERLAY, "u_glyphs"), 0);
 	gl->Uniform2f(uniform(scene, STAGE_OVERLAY, "u_size"), (float)scene->width, (float)scene->height);

@@ -28,12 +28,12 @@ bool scene_gl_init(struct scene_gl *gl, scene_gl_lookup lookup, char *error, siz
 		void *object;
 		void (*function)(void);
 	} pointer;
-#define SCENE_GL_LOAD(type, name)                                                             \
-	pointer.object = lookup("gl" #name);                                                      \
-	if (!pointer.object) {                                                                    \
-		snprintf(error, error_size, "the context has no function gl" #name);                  \
-		return false;                                                                         \
-	}                                                                                         \
+#define SCENE_GL_LOAD(type, name)                                            \
+	pointer.object = lookup("gl" #name);                                     \
+	if (!pointer.object) {                                                   \
+		snprintf(error, error_size, "the context has no function gl" #name); \
+		return false;                                                        \
+	}                                                                        \
 	gl->name = (type)pointer.function;
 	SCENE_GL_FUNCTIONS(SCENE_GL_LOAD)
 #undef SCENE_GL_LOAD
@@ -70,13 +70,13 @@ static GLuint compile(const struct scene_gl *gl, GLenum kind, const char *source
 	char log[512] = "";
 	gl->GetShaderInfoLog(shader, sizeof(log), NULL, log);
 	snprintf(error, error_size, "a scene's %s shader does not compile: %s",
-	         kind == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
+			 kind == GL_VERTEX_SHADER ? "vertex" : "fragment", log);
 	gl->DeleteShader(shader);
 	return 0;
 }
 
 GLuint scene_gl_program(const struct scene_gl *gl, const char *vertex, const char *fragment, char *error,
-                        size_t error_size)
+						size_t error_size)
 {
 	GLuint shaders[2] = {compile(gl, GL_VERTEX_SHADER, vertex, error, error_size), 0};
 	if (!shaders[0])

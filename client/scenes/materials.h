@@ -13,25 +13,25 @@
 #include <stdint.h>
 
 enum material {
-	MATERIAL_PLAIN,   /* almost white, a little grain */
-	MATERIAL_ASHLAR,  /* 2 m: dressed sandstone blocks */
-	MATERIAL_BRICK,   /* 2 m */
-	MATERIAL_PAVING,  /* 2 m: flagstones */
+	MATERIAL_PLAIN,  /* almost white, a little grain */
+	MATERIAL_ASHLAR, /* 2 m: dressed sandstone blocks */
+	MATERIAL_BRICK,  /* 2 m */
+	MATERIAL_PAVING, /* 2 m: flagstones */
 	MATERIAL_MARBLE,
 	MATERIAL_PLASTER,
-	MATERIAL_WOOD,    /* 1 m: planks along v */
-	MATERIAL_BARK,    /* birch, v up the trunk */
-	MATERIAL_LEAVES,  /* cutout, a spray of leaves */
-	MATERIAL_GRASS,   /* ground */
-	MATERIAL_TUFT,    /* cutout, blades from v = 0 up to v = 1 */
+	MATERIAL_WOOD,   /* 1 m: planks along v */
+	MATERIAL_BARK,   /* birch, v up the trunk */
+	MATERIAL_LEAVES, /* cutout, a spray of leaves */
+	MATERIAL_GRASS,  /* ground */
+	MATERIAL_TUFT,   /* cutout, blades from v = 0 up to v = 1 */
 	MATERIAL_FABRIC,
-	MATERIAL_PAINT,   /* painted steel with rivets along both edges in u */
+	MATERIAL_PAINT, /* painted steel with rivets along both edges in u */
 	MATERIAL_SAND,
 	MATERIAL_FUR,
-	MATERIAL_CLOUDS,  /* red: cover */
-	MATERIAL_FACADE,  /* 4 x 4 windows, alpha unused */
+	MATERIAL_CLOUDS, /* red: cover */
+	MATERIAL_FACADE, /* 4 x 4 windows, alpha unused */
 	MATERIAL_ASPHALT,
-	MATERIAL_GRID,    /* dark panels with bright lines */
+	MATERIAL_GRID, /* dark panels with bright lines */
 	MATERIAL_COUNT
 };
 

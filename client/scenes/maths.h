@@ -119,14 +119,14 @@ static inline struct vec3 mat4_point(const struct mat4 *a, struct vec3 p)
 {
 	const double *m = a->m;
 	return vec3(m[0] * p.x + m[4] * p.y + m[8] * p.z + m[12], m[1] * p.x + m[5] * p.y + m[9] * p.z + m[13],
-	            m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]);
+				m[2] * p.x + m[6] * p.y + m[10] * p.z + m[14]);
 }
 
 static inline struct vec3 mat4_direction(const struct mat4 *a, struct vec3 p)
 {
 	const double *m = a->m;
 	return vec3(m[0] * p.x + m[4] * p.y + m[8] * p.z, m[1] * p.x + m[5] * p.y + m[9] * p.z,
-	            m[2] * p.x + m[6] * p.y + m[10] * p.z);
+				m[2] * p.x + m[6] * p.y + m[10] * p.z);
 }
 
 /* The inverse of a rotation followed by a translation. */
@@ -157,8 +157,8 @@ static inline struct mat4 mat4_look_at(struct vec3 eye, struct vec3 target)
 	struct vec3 back = vec3_normalize(vec3_sub(eye, target));
 	struct vec3 right = vec3_normalize(vec3_cross(vec3(0, 1, 0), back));
 	struct vec3 up = vec3_cross(back, right);
-	struct mat4 pose = {{right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, eye.x, eye.y,
-	                     eye.z, 1}};
+	struct mat4 pose = {
+		{right.x, right.y, right.z, 0, up.x, up.y, up.z, 0, back.x, back.y, back.z, 0, eye.x, eye.y, eye.z, 1}};
 	return mat4_rigid_inverse(&pose);
 }
 
@@ -167,7 +167,7 @@ static inline struct mat4 mat4_perspective(double fov_y, double aspect, double n
 {
 	double f = 1.0 / tan(fov_y * 0.5);
 	return (struct mat4){{f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0,
-	                      2.0 * far * near / (near - far), 0}};
+						  2.0 * far * near / (near - far), 0}};
 }
 
 static inline uint32_t scene_hash(uint32_t x)

@@ -52,7 +52,7 @@ static int8_t normal_byte(double x)
 uint32_t mesh_add_vertex(struct mesh *mesh, struct vec3 position, struct vec3 normal, double u, double v)
 {
 	if (mesh->failed ||
-	    !grow((void **)&mesh->vertices, &mesh->vertex_capacity, mesh->vertex_count, sizeof(*mesh->vertices))) {
+		!grow((void **)&mesh->vertices, &mesh->vertex_capacity, mesh->vertex_count, sizeof(*mesh->vertices))) {
 		mesh->failed = true;
 		return 0;
 	}
@@ -85,7 +85,7 @@ static struct vec3 normal_of(const struct mesh *mesh, uint32_t i)
 void mesh_add_triangle(struct mesh *mesh, uint32_t a, uint32_t b, uint32_t c)
 {
 	if (mesh->failed ||
-	    !grow((void **)&mesh->indices, &mesh->index_capacity, mesh->index_count + 2, sizeof(*mesh->indices))) {
+		!grow((void **)&mesh->indices, &mesh->index_capacity, mesh->index_count + 2, sizeof(*mesh->indices))) {
 		mesh->failed = true;
 		return;
 	}
@@ -121,7 +121,7 @@ static uint32_t flat_vertex(struct mesh *mesh, struct vec3 p, struct vec3 normal
 void mesh_quad(struct mesh *mesh, struct vec3 a, struct vec3 b, struct vec3 c, struct vec3 d, struct vec3 normal)
 {
 	uint32_t i[4] = {flat_vertex(mesh, a, normal), flat_vertex(mesh, b, normal), flat_vertex(mesh, c, normal),
-	                 flat_vertex(mesh, d, normal)};
+					 flat_vertex(mesh, d, normal)};
 	add_quad(mesh, i[0], i[1], i[2], i[3]);
 }
 
@@ -163,7 +163,7 @@ void mesh_beam(struct mesh *mesh, struct vec3 a, struct vec3 b, double width, do
 }
 
 void mesh_lathe(struct mesh *mesh, struct vec3 base, const double (*profile)[2], size_t count, int segments,
-                double turns)
+				double turns)
 {
 	double v = 0.0;
 	for (size_t i = 0; i + 1 < count; i++) {
@@ -177,7 +177,7 @@ void mesh_lathe(struct mesh *mesh, struct vec3 base, const double (*profile)[2],
 			for (size_t k = 0; k < 2; k++) {
 				double r = profile[i + k][0];
 				now[k] = mesh_add_vertex(mesh, vec3(base.x + r * c, base.y + profile[i + k][1], base.z + r * n), normal,
-				                         turns * s / segments, k ? next_v : v);
+										 turns * s / segments, k ? next_v : v);
 			}
 			if (s > 0)
 				add_quad(mesh, before[0], now[0], now[1], before[1]);
@@ -199,8 +199,8 @@ void mesh_ellipsoid(struct mesh *mesh, struct vec3 center, struct vec3 radii, in
 			double angle = 2.0 * SCENE_PI * s / segments;
 			struct vec3 d = vec3(sin(down) * cos(angle), cos(down), sin(down) * sin(angle));
 			mesh_add_vertex(mesh, vec3(center.x + d.x * radii.x, center.y + d.y * radii.y, center.z + d.z * radii.z),
-			                vec3(d.x / radii.x, d.y / radii.y, d.z / radii.z), turns * s / segments,
-			                radii.y * down / mesh->brush.repeat);
+							vec3(d.x / radii.x, d.y / radii.y, d.z / radii.z), turns * s / segments,
+							radii.y * down / mesh->brush.repeat);
 		}
 	}
 	for (uint32_t i = 0; i < (uint32_t)rings && !mesh->failed; i++) {
@@ -216,7 +216,7 @@ void mesh_limb(struct mesh *mesh, struct vec3 a, double radius_a, struct vec3 b,
 	struct mat4 frame = mat4_along(a, vec3_sub(b, a));
 	double length = vec3_length(vec3_sub(b, a));
 	const double rows[6][3] = {/* angle of the normal, centre (0: a, 1: b), unused */
-	                           {-0.5, 0, 0}, {-0.25, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0.25, 1, 0}, {0.5, 1, 0}};
+							   {-0.5, 0, 0}, {-0.25, 0, 0}, {0, 0, 0}, {0, 1, 0}, {0.25, 1, 0}, {0.5, 1, 0}};
 	double turns = fmax(1.0, floor(2.0 * SCENE_PI * fmax(radius_a, radius_b) / mesh->brush.repeat + 0.5));
 	uint32_t stride = (uint32_t)segments + 1, first = (uint32_t)mesh->vertex_count;
 	for (int i = 0; i < 6; i++) {
@@ -226,7 +226,7 @@ void mesh_limb(struct mesh *mesh, struct vec3 a, double radius_a, struct vec3 b,
 			double angle = 2.0 * SCENE_PI * s / segments;
 			struct vec3 n = vec3(cos(tilt) * cos(angle), cos(tilt) * sin(angle), sin(tilt));
 			mesh_add_vertex(mesh, mat4_point(&frame, vec3(r * cos(angle), r * sin(angle), z)),
-			                mat4_direction(&frame, n), turns * s / segments, z / mesh->brush.repeat);
+							mat4_direction(&frame, n), turns * s / segments, z / mesh->brush.repeat);
 		}
 	}
 	for (uint32_t i = 0; i < 5 && !mesh->failed; i++) {

@@ -26,12 +26,12 @@ struct mesh_vertex {
 };
 
 struct mesh_brush {
-	uint8_t layer;      /* of the scene's material array */
-	double repeat;      /* metres per repeat of the texture */
+	uint8_t layer; /* of the scene's material array */
+	double repeat; /* metres per repeat of the texture */
 	uint8_t tint[3];
-	uint8_t open;       /* 255: sees the whole sky; 0: no ambient light */
+	uint8_t open; /* 255: sees the whole sky; 0: no ambient light */
 	uint8_t sway, sway_phase;
-	uint8_t glow;       /* own light, 64 is 1 */
+	uint8_t glow; /* own light, 64 is 1 */
 	uint32_t id;
 };
 
@@ -57,7 +57,13 @@ void mesh_add_triangle(struct mesh *mesh, uint32_t a, uint32_t b, uint32_t c);
 void mesh_quad(struct mesh *mesh, struct vec3 a, struct vec3 b, struct vec3 c, struct vec3 d, struct vec3 normal);
 
 enum mesh_faces {
-	MESH_LEFT = 1, MESH_RIGHT = 2, MESH_BOTTOM = 4, MESH_TOP = 8, MESH_BACK = 16, MESH_FRONT = 32, MESH_ALL = 63,
+	MESH_LEFT = 1,
+	MESH_RIGHT = 2,
+	MESH_BOTTOM = 4,
+	MESH_TOP = 8,
+	MESH_BACK = 16,
+	MESH_FRONT = 32,
+	MESH_ALL = 63,
 };
 void mesh_box(struct mesh *mesh, struct vec3 low, struct vec3 high, uint32_t faces);
 
@@ -66,7 +72,7 @@ void mesh_beam(struct mesh *mesh, struct vec3 a, struct vec3 b, double width, do
 
 /* Around the y axis at `base`; profile of radius and height pairs, upwards. u goes `turns` repeats around. */
 void mesh_lathe(struct mesh *mesh, struct vec3 base, const double (*profile)[2], size_t count, int segments,
-                double turns);
+				double turns);
 void mesh_ellipsoid(struct mesh *mesh, struct vec3 center, struct vec3 radii, int segments, int rings);
 
 /* A tapered limb with round ends. */

@@ -35,12 +35,12 @@ void overlay_finish(struct overlay *overlay);
 
 /* color is 0xRRGGBB, alpha 0 to 1. */
 void overlay_rectangle(struct overlay *overlay, double x, double y, double width, double height, uint32_t color,
-                       double alpha);
+					   double alpha);
 void overlay_frame(struct overlay *overlay, double x, double y, double width, double height, double line,
-                   uint32_t color, double alpha);
+				   uint32_t color, double alpha);
 /* A straight bar of the given thickness between two points. */
-void overlay_line(struct overlay *overlay, double x0, double y0, double x1, double y1, double thickness,
-                  uint32_t color, double alpha);
+void overlay_line(struct overlay *overlay, double x0, double y0, double x1, double y1, double thickness, uint32_t color,
+				  double alpha);
 /* Capital letters, digits and common signs; returns the width. */
 double overlay_text(struct overlay *overlay, double x, double y, double scale, uint32_t color, const char *text);
 

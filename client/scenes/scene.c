@@ -10,7 +10,7 @@
 #include "stage.h"
 
 static const struct stage_kind *const kinds[] = {&scene_colonnade, &scene_tower, &scene_fan, &scene_trees,
-                                                 &scene_creature,  &scene_rings, &scene_hud, &scene_still};
+												 &scene_creature,  &scene_rings, &scene_hud, &scene_still};
 
 enum { KIND_COUNT = sizeof(kinds) / sizeof(kinds[0]) };
 
@@ -56,7 +56,7 @@ void stage_end(struct scene *scene, const struct mesh *mesh, uint32_t range)
 }
 
 struct stage_draw *stage_draw(struct stage_plan *plan, enum stage_program program, uint32_t range, uint32_t part,
-                              uint32_t id_base)
+							  uint32_t id_base)
 {
 	static _Thread_local struct stage_draw spare;
 	struct stage_draw *draw = plan->draw_count < STAGE_DRAWS ? &plan->draws[plan->draw_count++] : &spare;
@@ -77,8 +77,8 @@ static bool create_content(struct scene *scene, char *error, size_t error_size)
 	return ok;
 }
 
-struct scene *scene_create(const char *name, uint32_t width, uint32_t height, scene_gl_lookup lookup,
-                           char *error, size_t error_size)
+struct scene *scene_create(const char *name, uint32_t width, uint32_t height, scene_gl_lookup lookup, char *error,
+						   size_t error_size)
 {
 	char unused[1];
 	if (!error) {
@@ -105,7 +105,7 @@ struct scene *scene_create(const char *name, uint32_t width, uint32_t height, sc
 	scene->width = width;
 	scene->height = height;
 	if (!stage_create_programs(scene, error, error_size) || !create_content(scene, error, error_size) ||
-	    !stage_create_targets(scene, error, error_size))
+		!stage_create_targets(scene, error, error_size))
 		scene_destroy(&scene);
 	return scene;
 }
@@ -159,8 +159,8 @@ static void fill_camera(const struct scene *scene, struct scene_camera *camera)
 static bool is_drawn(const struct scene *scene)
 {
 	return scene->drawn && memcmp(scene->plan.draws, scene->drawn_plan.draws, sizeof(scene->plan.draws)) == 0 &&
-	       memcmp(&scene->now, &scene->drawn_now, sizeof(scene->now)) == 0 &&
-	       memcmp(&scene->other, &scene->drawn_previous, sizeof(scene->other)) == 0;
+		   memcmp(&scene->now, &scene->drawn_now, sizeof(scene->now)) == 0 &&
+		   memcmp(&scene->other, &scene->drawn_previous, sizeof(scene->other)) == 0;
 }
 
 /* What does not change need not be drawn again: a still scene costs nothing. */
@@ -191,10 +191,10 @@ static void render_overlay(struct scene *scene, double time)
 }
 
 bool scene_render(struct scene *scene, const struct scene_request *request, struct scene_textures *textures,
-                  struct scene_camera *camera)
+				  struct scene_camera *camera)
 {
 	if (!isfinite(request->time) || !isfinite(request->time_previous) ||
-	    (request->forward && !isfinite(request->time_next)))
+		(request->forward && !isfinite(request->time_next)))
 		return false;
 	if (request->forward && !stage_create_forward(scene))
 		return false;
@@ -214,11 +214,11 @@ bool scene_render(struct scene *scene, const struct scene_request *request, stru
 		render_overlay(scene, time);
 	if (textures)
 		*textures = (struct scene_textures){.color = scene->targets[0],
-		                                    .depth = scene->targets[1],
-		                                    .backward = scene->targets[2],
-		                                    .object_id = scene->targets[3],
-		                                    .forward = request->forward ? scene->targets[4] : 0,
-		                                    .ui = scene->ui};
+											.depth = scene->targets[1],
+											.backward = scene->targets[2],
+											.object_id = scene->targets[3],
+											.forward = request->forward ? scene->targets[4] : 0,
+											.ui = scene->ui};
 	return true;
 }
 

@@ -65,22 +65,22 @@ struct scene;
  * NULL on failure, with a sentence in error (error_size bytes, may be NULL).
  * All calls on the thread that owns the context.
  */
-struct scene *scene_create(const char *name, uint32_t width, uint32_t height, scene_gl_lookup lookup,
-                           char *error, size_t error_size);
+struct scene *scene_create(const char *name, uint32_t width, uint32_t height, scene_gl_lookup lookup, char *error,
+						   size_t error_size);
 void scene_destroy(struct scene **scene);
 
 /* Renders one moment. The same request gives the same bits on one renderer. */
 bool scene_render(struct scene *scene, const struct scene_request *request, struct scene_textures *textures,
-                  struct scene_camera *camera);
+				  struct scene_camera *camera);
 
 /* Key presses of the task scene `rings`: 'o' open ring, 'c' closed ring. Others ignore it. */
 void scene_key(struct scene *scene, double time, int key);
 
 /* Score of the task experiment (Didyk et al. 2010, Section 7.2); false for other scenes. */
 struct scene_score {
-	uint32_t shown;  /* rings that have left the picture */
-	uint32_t hits;   /* right key while a ring was in sight */
-	uint32_t misses; /* no key while it was in sight */
+	uint32_t shown;         /* rings that have left the picture */
+	uint32_t hits;          /* right key while a ring was in sight */
+	uint32_t misses;        /* no key while it was in sight */
 	uint32_t false_answers; /* wrong key */
 };
 bool scene_get_score(const struct scene *scene, double time, struct scene_score *score);

@@ -12,8 +12,8 @@
 #define PURSUIT_SCENES_STAGE_H
 
 #include "gl.h"
-#include "maths.h"
 #include "materials.h"
+#include "maths.h"
 #include "mesh.h"
 #include "overlay.h"
 #include "scene.h"
@@ -24,14 +24,7 @@
 #define STAGE_MATERIALS 8
 #define STAGE_ATTACHMENTS 5
 
-enum stage_program {
-	STAGE_SOLID,
-	STAGE_CUTOUT,
-	STAGE_COLONNADE,
-	STAGE_SKY,
-	STAGE_OVERLAY,
-	STAGE_PROGRAMS
-};
+enum stage_program { STAGE_SOLID, STAGE_CUTOUT, STAGE_COLONNADE, STAGE_SKY, STAGE_OVERLAY, STAGE_PROGRAMS };
 
 struct stage_range {
 	uint32_t first, count; /* indices */
@@ -129,7 +122,7 @@ void stage_end(struct scene *scene, const struct mesh *mesh, uint32_t range);
 
 /* Appends a draw; ignored when the plan is full. */
 struct stage_draw *stage_draw(struct stage_plan *plan, enum stage_program program, uint32_t range, uint32_t part,
-                              uint32_t id_base);
+							  uint32_t id_base);
 
 /* programs.c */
 bool stage_create_programs(struct scene *scene, char *error, size_t error_size);

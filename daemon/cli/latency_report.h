@@ -36,6 +36,6 @@ json_t *latency_compare_json(const struct latency_report *a, const struct latenc
 
 /* Histograms and time series; b may be NULL. 0 or a negative errno with a sentence. */
 int latency_report_svg(const struct latency_report *a, const struct latency_report *b, const char *path,
-                       struct error *error);
+					   struct error *error);
 
 #endif

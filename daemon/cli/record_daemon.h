@@ -7,7 +7,8 @@
 
 #include <stdio.h>
 
-/* seconds 0: until Ctrl-C. socket NULL: the usual one. What was written is said on `out`. Gives the exit status back. */
+/* seconds 0: until Ctrl-C. socket NULL: the usual one. What was written is said on `out`. Gives the exit status back.
+ */
 int record_daemon(const char *path, const char *socket, double seconds, FILE *out);
 
 #endif

@@ -33,7 +33,7 @@ struct report_variant {
 	bool plain;                /* the default setting */
 	bool every_n;              /* played for each N, else for the first only */
 	struct settings settings;
-	struct engine *engine; /* NULL: REPORT_RENDERED */
+	struct engine *engine;   /* NULL: REPORT_RENDERED */
 	struct engine_info info; /* borrowed texts of the engine */
 };
 
@@ -51,8 +51,8 @@ struct report_row {
 struct report_gallery {
 	const struct report_work *work;
 	struct crop crop;
-	double time_s, speed; /* of the crop: when, mean pixels a second */
-	uint8_t *truth;       /* seen of the truth, the crop; owned */
+	double time_s, speed;      /* of the crop: when, mean pixels a second */
+	uint8_t *truth;            /* seen of the truth, the crop; owned */
 	struct contact *sheet;     /* while it is made; owned */
 	char contact[REPORT_NAME]; /* file of the contact sheet in DIR/pictures, "": none */
 };
@@ -76,7 +76,7 @@ struct report {
 	struct report_row *rows;
 	uint32_t row_count, row_capacity;
 	struct report_gallery *galleries; /* one a work */
-	json_t *tables; /* of other programs: [{title, columns, rows}] */
+	json_t *tables;                   /* of other programs: [{title, columns, rows}] */
 	char started[32];
 	double seconds;
 	bool interrupted;

@@ -43,7 +43,8 @@ struct clip_site {
 struct clip {
 	uint32_t width, height;
 	double refresh_hz;
-	uint32_t samples; /* of the pursuit camera for each displayed picture: truth has samples x refresh_hz pictures a s */
+	uint32_t
+		samples; /* of the pursuit camera for each displayed picture: truth has samples x refresh_hz pictures a s */
 	bool approximate; /* regions are guessed */
 	struct clip_real *reals;
 	uint32_t real_count;

@@ -200,8 +200,8 @@ struct clip *clip_of_scene(struct scene_source *source, const struct arg_size *s
 	}
 	maker->source = source;
 	maker->params = params;
-	maker->clip = clip_create(size->width, size->height, params->reals, params->reals * params->n, params->reals - 3,
-							  error);
+	maker->clip =
+		clip_create(size->width, size->height, params->reals, params->reals * params->n, params->reals - 3, error);
 	if (maker->clip) {
 		maker->clip->refresh_hz = params->refresh_hz;
 		maker->clip->samples = (uint32_t)fmax(1.0, round(TRUTH_HZ / params->refresh_hz));

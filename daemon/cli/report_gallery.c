@@ -19,7 +19,8 @@
 /* Motion that crosses detail is what a held picture smears. */
 static double interest(const struct clip *clip, const struct clip_site *site, size_t pixel)
 {
-	if (!site->valid[pixel] || (pixel + 1) % clip->width == 0 || pixel + clip->width >= (size_t)clip->width * clip->height)
+	if (!site->valid[pixel] || (pixel + 1) % clip->width == 0 ||
+		pixel + clip->width >= (size_t)clip->width * clip->height)
 		return 0.0;
 	const uint8_t *here = site->truth + 4 * pixel, *right = here + 4, *below = here + 4 * (size_t)clip->width;
 	const float *before = site->path.before + 2 * pixel, *after = site->path.after + 2 * pixel;

@@ -159,8 +159,8 @@ static void compare_measure(struct comparison *comparison, int measure)
 	const double lost = 100.0 * (was - is) / fmax(fabs(before), 1e-9);
 	const bool worse = comparison->percent >= 0.0 && lost > comparison->percent;
 	comparison->worse |= worse;
-	fprintf(comparison->out, "  %-22s %.*f -> %.*f %s (%s; spread %.*f, now %.*f)%s\n", info->name, info->digits, before,
-			info->digits, after, info->unit, is > was ? "better" : "worse", info->digits,
+	fprintf(comparison->out, "  %-22s %.*f -> %.*f %s (%s; spread %.*f, now %.*f)%s\n", info->name, info->digits,
+			before, info->digits, after, info->unit, is > was ? "better" : "worse", info->digits,
 			json_number_value(json_object_get(old, "spread")), info->digits,
 			score_spread(&comparison->row->score, (enum score_measure)measure), worse ? "  TOO MUCH" : "");
 }

@@ -61,8 +61,8 @@ double report_mean_ms(const struct report *report, const struct report_variant *
 static bool point_of_row(const struct report_row *row, struct report_point *point)
 {
 	const double psnr = score_value(&row->score, SCORE_PSNR);
-	*point = (struct report_point){row->variant, report_row_ms(row, 50), report_row_ms(row, 25),
-								   report_row_ms(row, 75), score_value(&row->score, SCORE_PERCEIVED_ERROR)};
+	*point = (struct report_point){row->variant, report_row_ms(row, 50), report_row_ms(row, 25), report_row_ms(row, 75),
+								   score_value(&row->score, SCORE_PERCEIVED_ERROR)};
 	if (row->work->recording)
 		point->error = 255.0 * pow(10.0, -psnr / 20.0);
 	return isfinite(point->ms) && isfinite(point->error);
@@ -112,9 +112,9 @@ void report_plot_name(char name[REPORT_NAME], const char *kind, const struct rep
 
 /* ---- the table for a person ---- */
 
-static const enum score_measure printed[] = {SCORE_PERCEIVED_ERROR, SCORE_PERCEIVED_PSNR, SCORE_PERCEIVED_LAG,
-											 SCORE_PSNR,            SCORE_SSIM,           SCORE_TPSNR,
-											 SCORE_ENERGY_ERROR,    SCORE_RIPPLE};
+static const enum score_measure printed[] = {
+	SCORE_PERCEIVED_ERROR, SCORE_PERCEIVED_PSNR, SCORE_PERCEIVED_LAG, SCORE_PSNR, SCORE_SSIM,
+	SCORE_TPSNR,           SCORE_ENERGY_ERROR,   SCORE_RIPPLE};
 #define PRINTED (sizeof(printed) / sizeof(*printed))
 
 static void print_number(FILE *out, int width, int digits, double value)

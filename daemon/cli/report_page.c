@@ -185,10 +185,11 @@ static void put_work(const struct report *report, FILE *out, uint32_t index)
 	html_text(out, work->name);
 	fprintf(out, ", N = %u, %ux%u</h2>\n", work->n, work->size.width, work->size.height);
 	if (work->recording)
-		fputs("<p class=\"note\">A recording: each frame predicts the next one, without compensation. Moving pixels are "
-			  "those that its own motion says, disoccluded ones are guessed from its depth. Nothing is known of the "
-			  "moments between, so there is no pursuit camera.</p>\n",
-			  out);
+		fputs(
+			"<p class=\"note\">A recording: each frame predicts the next one, without compensation. Moving pixels are "
+			"those that its own motion says, disoccluded ones are guessed from its depth. Nothing is known of the "
+			"moments between, so there is no pursuit camera.</p>\n",
+			out);
 	report_plot_name(name, "error", report, index);
 	put_file(report, out, "plots", name, ".svg", "error against run time", "");
 	report_plot_name(name, "time", report, index);
@@ -240,9 +241,10 @@ static void put_tables(const struct report *report, FILE *out)
 
 static void put_all_rows(const struct report *report, FILE *out)
 {
-	fputs("<h2>All rows</h2>\n<details><summary>Every scene, method and setting</summary><div class=\"wide\"><table><tr>"
-		  "<th>case</th><th>ms p50</th><th>ms p99</th><th>kB up</th><th>kB down</th>",
-		  out);
+	fputs(
+		"<h2>All rows</h2>\n<details><summary>Every scene, method and setting</summary><div class=\"wide\"><table><tr>"
+		"<th>case</th><th>ms p50</th><th>ms p99</th><th>kB up</th><th>kB down</th>",
+		out);
 	for (int i = 0; i < SCORE_MEASURES; i++)
 		fprintf(out, "<th>%s</th>", score_table[i].title);
 	fputs("</tr>\n", out);

@@ -153,8 +153,8 @@ static int add_variant(struct report *report, const char *method, const char *se
 		return args_failed(VERB, "out of memory");
 	report->variants = grown;
 	struct report_variant *variant = &grown[report->variant_count++];
-	*variant = (struct report_variant){.settings = report->options.settings, .lag = lag_of(method), .every_n = every_n,
-										.plain = !setting};
+	*variant = (struct report_variant){
+		.settings = report->options.settings, .lag = lag_of(method), .every_n = every_n, .plain = !setting};
 	snprintf(variant->method, sizeof(variant->method), "%s", method);
 	snprintf(variant->settings.method, sizeof(variant->settings.method), "%s", method);
 	snprintf(variant->setting, sizeof(variant->setting), "%s", setting ? setting : "default");

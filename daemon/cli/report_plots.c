@@ -122,8 +122,9 @@ static void write_points(const struct report *report, FILE *script, const struct
 		if (variant->plain)
 			fprintf(script, " title '%s'", variant->method);
 		else
-			fprintf(script, " notitle, \\\n $p%u using 1:4:5 with labels left offset 0.6,0.4 font ',9' textcolor '%s' "
-							"noenhanced notitle",
+			fprintf(script,
+					" notitle, \\\n $p%u using 1:4:5 with labels left offset 0.6,0.4 font ',9' textcolor '%s' "
+					"noenhanced notitle",
 					i, colors[color]);
 	}
 }
@@ -152,8 +153,9 @@ static bool plot_pareto(const struct report *report, const struct report_work *w
 			points[count++] = points[i];
 	}
 	if (count > 0 && plot_open(&plot, report, name, work ? 560 : 900, work ? 380 : 520)) {
-		fprintf(plot.script, "set title '%s' noenhanced\nset logscale xy\nset xlabel 'engine, ms a displayed frame "
-							 "(median, middle half)'\nset ylabel '%s'\nset yrange [*:*]\nset key font ',11'\n",
+		fprintf(plot.script,
+				"set title '%s' noenhanced\nset logscale xy\nset xlabel 'engine, ms a displayed frame "
+				"(median, middle half)'\nset ylabel '%s'\nset yrange [*:*]\nset key font ',11'\n",
 				title,
 				work && work->recording ? "root mean square error, code values" : "perceived error, code values");
 		write_front(plot.script, points, count);
@@ -187,10 +189,11 @@ static bool plot_time(const struct report *report, const struct report_work *wor
 	struct plot plot;
 	if (!plot_open(&plot, report, name, 560, 380))
 		return false;
-	fprintf(plot.script,
-			"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene, s'\nset ylabel 'PSNR of in-betweens, dB'\n"
-			"set key font ',11'\n",
-			work->name, work->n);
+	fprintf(
+		plot.script,
+		"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene, s'\nset ylabel 'PSNR of in-betweens, dB'\n"
+		"set key font ',11'\n",
+		work->name, work->n);
 	for (uint32_t i = 0; i < report->row_count; i++) {
 		if (report->rows[i].work == work && report->rows[i].variant->plain && report->rows[i].variant->engine)
 			write_series(plot.script, i, report->rows[i].score.over_time);
@@ -215,9 +218,10 @@ static bool plot_speed(const struct report *report)
 	struct plot plot;
 	if (!plot_open(&plot, report, "speed", 900, 520))
 		return false;
-	fprintf(plot.script, "set title 'Perceived error against the speed of motion, all scenes, N = %u'\n"
-						 "set xlabel 'speed of the true motion, pixels a second (upper end of each class)'\n"
-						 "set ylabel 'perceived error, code values'\nset logscale x 2\nset logscale y\n",
+	fprintf(plot.script,
+			"set title 'Perceived error against the speed of motion, all scenes, N = %u'\n"
+			"set xlabel 'speed of the true motion, pixels a second (upper end of each class)'\n"
+			"set ylabel 'perceived error, code values'\nset logscale x 2\nset logscale y\n",
 			report->works[0].n);
 	const char *separator = "plot ";
 	for (int pass = 0; pass < 2; pass++) {

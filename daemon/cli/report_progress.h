@@ -17,7 +17,7 @@ struct report_progress {
 void report_progress_begin(struct report_progress *progress, uint32_t total);
 /* A step begins; the text says which. */
 __attribute__((format(printf, 2, 3))) void report_progress_step(struct report_progress *progress, const char *format,
-																 ...);
+																...);
 /* Takes the bar away. */
 void report_progress_end(struct report_progress *progress);
 

@@ -134,10 +134,9 @@ static json_t *speeds_json(const struct score *score)
 	json_t *speeds = json_array();
 	for (uint32_t i = 0; i < CAMERA_SPEEDS && score->sites; i++) {
 		const double limit = i < CAMERA_SPEEDS - 1 ? camera_speed_limits[i] : (double)INFINITY;
-		json_array_append_new(
-			speeds, json_pack("{s:o, s:I, s:o}", "up_to_px_per_s", figures_number(limit), "pixels",
-							  (json_int_t)score->by_speed[i].count, "perceived_error",
-							  figures_number(squared_error_root(&score->by_speed[i]))));
+		json_array_append_new(speeds, json_pack("{s:o, s:I, s:o}", "up_to_px_per_s", figures_number(limit), "pixels",
+												(json_int_t)score->by_speed[i].count, "perceived_error",
+												figures_number(squared_error_root(&score->by_speed[i]))));
 	}
 	return speeds;
 }
@@ -197,13 +196,14 @@ json_t *report_json(const struct report *report)
 	for (int i = 0; i < SCORE_MEASURES; i++)
 		json_object_set_new(help, score_table[i].name,
 							json_pack("{s:s, s:s, s:s}", "unit", score_table[i].unit, "help", score_table[i].help,
-									  "better", score_table[i].better > 0   ? "greater"
-												: score_table[i].better < 0 ? "less"
-																			: "near best"));
-	json_t *json = json_pack("{s:s, s:s, s:s, s:f, s:b, s:b, s:o, s:o, s:o}", "pursuit", "report", "version", version,
-							 "started", report->started, "seconds", report->seconds, "complete", !report->interrupted,
-							 "full", (int)report->options.full, "machine", machine_json(report), "measures", help,
-							 "rows", rows);
+									  "better",
+									  score_table[i].better > 0   ? "greater"
+									  : score_table[i].better < 0 ? "less"
+																  : "near best"));
+	json_t *json =
+		json_pack("{s:s, s:s, s:s, s:f, s:b, s:b, s:o, s:o, s:o}", "pursuit", "report", "version", version, "started",
+				  report->started, "seconds", report->seconds, "complete", !report->interrupted, "full",
+				  (int)report->options.full, "machine", machine_json(report), "measures", help, "rows", rows);
 	if (report->tables)
 		json_object_set(json, "tables", report->tables);
 	return json;

@@ -17,7 +17,7 @@ struct scorer {
 	/* what follows is for one clip */
 	const struct clip *clip;
 	uint8_t *const *pictures;
-	uint32_t late; /* displayed pictures by which the method is late */
+	uint32_t late;        /* displayed pictures by which the method is late */
 	light_pixel **lights; /* one a displayed picture, NULL: not made yet */
 	light_pixel *seen;
 	uint8_t *codes, *truth;
@@ -159,7 +159,8 @@ static int score_energy(struct scorer *scorer, struct score *score, const struct
 	double luminances[8];
 	const struct clip_shown *shown = &clip->shown[real->first_shown];
 	const uint32_t first = real->first_shown + scorer->late;
-	if (real->shown_count > 8 || !shown->truth || real->shown_count < 2 || first + real->shown_count > clip->shown_count)
+	if (real->shown_count > 8 || !shown->truth || real->shown_count < 2 ||
+		first + real->shown_count > clip->shown_count)
 		return 0;
 	for (uint32_t k = 0; k < real->shown_count; k++) {
 		const light_pixel *light = light_of(scorer, first + k, error);
@@ -211,7 +212,8 @@ static int try_lag(struct scorer *scorer, uint32_t lag, double *sum, struct erro
 		for (uint32_t y = 0; y < clip->height; y += step) {
 			const size_t at = (size_t)y * clip->width;
 			light_to_codes(&scorer->transfer, scorer->seen + at, clip->width, scorer->codes);
-			const struct picture seen = {scorer->codes, 0, clip->width, 1}, truth = {site->truth + 4 * at, 0, clip->width, 1};
+			const struct picture seen = {scorer->codes, 0, clip->width, 1},
+								 truth = {site->truth + 4 * at, 0, clip->width, 1};
 			squared_error_add(&rows, &seen, &truth, site->valid + at, 1);
 		}
 		*sum += rows.sum;
@@ -264,8 +266,8 @@ static void blank_invalid(const struct clip *clip, const struct clip_site *site,
 	}
 }
 
-static int score_site(struct scorer *scorer, struct score *score, uint32_t index, uint32_t lag,
-					  const struct crop *crop, uint8_t *kept, struct error *error)
+static int score_site(struct scorer *scorer, struct score *score, uint32_t index, uint32_t lag, const struct crop *crop,
+					  uint8_t *kept, struct error *error)
 {
 	const struct clip *clip = scorer->clip;
 	const struct clip_site *site = &clip->sites[index];

@@ -43,8 +43,8 @@ static json_t *table_of_suite(const json_t *suite)
 	}
 	snprintf(title, sizeof(title), "Stability: %.100s%s%.100s", json_string_value(json_object_get(suite, "suite")),
 			 context && *context ? ", " : "", context ? context : "");
-	return json_pack("{s:s, s:[s, s, s, s, s], s:o}", "title", title, "columns", "case", "worst error", "bound", "kept?",
-					 "where", "rows", rows);
+	return json_pack("{s:s, s:[s, s, s, s, s], s:o}", "title", title, "columns", "case", "worst error", "bound",
+					 "kept?", "where", "rows", rows);
 }
 
 static int load_table(struct report *report, const char *path, struct error *error)

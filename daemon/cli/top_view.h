@@ -32,7 +32,7 @@ enum top_figure {
 };
 
 struct top_view {
-	json_t *status;              /* the newest; owned */
+	json_t *status;                       /* the newest; owned */
 	double trend[TOP_FIGURES][TOP_TREND]; /* the newest last; NAN: not known */
 	uint64_t rounds;
 };

@@ -27,29 +27,30 @@ static bool parse(struct export_options *options, int argc, char **argv, int *st
 {
 	struct export_params *params = &options->params;
 	const struct arg_row rows[] = {
-	    {"color", ARG_TEXT, &params->color, 0, 0, NULL, "PATTERN", "colour as PNG, 'c_%04d.png'"},
-	    {"ui", ARG_TEXT, &params->ui, 0, 0, NULL, "PATTERN", "the UI layer as PNG, as it was recorded (premultiplied)"},
-	    {"depth", ARG_TEXT, &params->depth, 0, 0, NULL, "PATTERN", "depth as PFM, 'd_%04d.pfm'"},
-	    {"motion", ARG_TEXT, &params->motion, 0, 0, NULL, "PATTERN", "motion as PFM: x, y, 0; in pixels, +y down"},
-	    {"y4m", ARG_TEXT, &params->video, 0, 0, NULL, "FILE", "video into a file, or to a pipe with -"},
-	    {"chroma", ARG_CHOICE, &options->chroma, 0, 0, chromas, "C", "of the video: 420 (the default) or 444"},
-	    {"first", ARG_NUMBER, &options->first, 0, PATTERN_MAX_NUMBER, NULL, "I", "first number"},
-	    {"last", ARG_NUMBER, &options->last, 0, PATTERN_MAX_NUMBER, NULL, "J", "last number"},
-	    {"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print what was exported as JSON"},
-	    {0},
+		{"color", ARG_TEXT, &params->color, 0, 0, NULL, "PATTERN", "colour as PNG, 'c_%04d.png'"},
+		{"ui", ARG_TEXT, &params->ui, 0, 0, NULL, "PATTERN", "the UI layer as PNG, as it was recorded (premultiplied)"},
+		{"depth", ARG_TEXT, &params->depth, 0, 0, NULL, "PATTERN", "depth as PFM, 'd_%04d.pfm'"},
+		{"motion", ARG_TEXT, &params->motion, 0, 0, NULL, "PATTERN", "motion as PFM: x, y, 0; in pixels, +y down"},
+		{"y4m", ARG_TEXT, &params->video, 0, 0, NULL, "FILE", "video into a file, or to a pipe with -"},
+		{"chroma", ARG_CHOICE, &options->chroma, 0, 0, chromas, "C", "of the video: 420 (the default) or 444"},
+		{"first", ARG_NUMBER, &options->first, 0, PATTERN_MAX_NUMBER, NULL, "I", "first number"},
+		{"last", ARG_NUMBER, &options->last, 0, PATTERN_MAX_NUMBER, NULL, "J", "last number"},
+		{"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print what was exported as JSON"},
+		{0},
 	};
 	const struct args args = {
-	    .verb = argv[0],
-	    .usage = "IN.pursuit [--color PATTERN] [--depth PATTERN] [--motion PATTERN] [--ui PATTERN] [--y4m FILE|-]",
-	    .summary = "Writes the frames of a recording as images and video. Frames have the numbers that their images\n"
-	               "had at import, else 0, 1, 2 and so on. What is damaged is named and left out; the exit status is then 1.",
-	    .examples = "  pursuit export walk.pursuit --color 'c_%04d.png' --depth 'd_%04d.pfm' --motion 'm_%04d.pfm'\n"
-	                "  pursuit export walk.pursuit --y4m - | ffmpeg -i - walk.mp4\n"
-	                "  pursuit export walk.pursuit --y4m walk.y4m --chroma 444 --first 10 --last 40\n",
-	    .rows = rows,
-	    .positionals = &params->path,
-	    .positional_min = 1,
-	    .positional_max = 1,
+		.verb = argv[0],
+		.usage = "IN.pursuit [--color PATTERN] [--depth PATTERN] [--motion PATTERN] [--ui PATTERN] [--y4m FILE|-]",
+		.summary =
+			"Writes the frames of a recording as images and video. Frames have the numbers that their images\n"
+			"had at import, else 0, 1, 2 and so on. What is damaged is named and left out; the exit status is then 1.",
+		.examples = "  pursuit export walk.pursuit --color 'c_%04d.png' --depth 'd_%04d.pfm' --motion 'm_%04d.pfm'\n"
+					"  pursuit export walk.pursuit --y4m - | ffmpeg -i - walk.mp4\n"
+					"  pursuit export walk.pursuit --y4m walk.y4m --chroma 444 --first 10 --last 40\n",
+		.rows = rows,
+		.positionals = &params->path,
+		.positional_min = 1,
+		.positional_max = 1,
 	};
 	return args_parse(&args, argc, argv, status);
 }
@@ -83,7 +84,7 @@ static void print_damage(void *data, const char *sentence)
 static int print_json(const char *path, const struct export_summary *s)
 {
 	json_t *json = json_pack("{s:s, s:I, s:I, s:I}", "recording", path, "frames", (json_int_t)s->frames,
-	                         "damaged_chunks", (json_int_t)s->damaged, "files", (json_int_t)s->files);
+							 "damaged_chunks", (json_int_t)s->damaged, "files", (json_int_t)s->files);
 	const bool done = json && json_dumpf(json, stdout, JSON_INDENT(2)) == 0;
 	json_decref(json);
 	printf("\n");
@@ -116,6 +117,6 @@ int verb_export(int argc, char **argv)
 	if (options.json)
 		return print_json(params->path, &summary) == STATUS_DONE ? status : STATUS_FAILED;
 	fprintf(params->video ? stderr : stdout, "%s: %llu frames, %llu image files, %llu damaged chunks\n", params->path,
-	        (unsigned long long)summary.frames, (unsigned long long)summary.files, (unsigned long long)summary.damaged);
+			(unsigned long long)summary.frames, (unsigned long long)summary.files, (unsigned long long)summary.damaged);
 	return status;
 }

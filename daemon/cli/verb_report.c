@@ -44,9 +44,10 @@ static bool read_options(struct report_options *options, int argc, char **argv, 
 	const struct args args = {
 		.verb = VERB,
 		.usage = "[options]",
-		.summary = "Error against run time: plays scenes and recordings with every method and some settings, measures\n"
-				   "engine time, what an eye sees of the display, and the rest, and writes report.json, report.csv (one\n"
-				   "row for each scene, method and setting) and report.html. Ctrl-C ends it early with what it has.",
+		.summary =
+			"Error against run time: plays scenes and recordings with every method and some settings, measures\n"
+			"engine time, what an eye sees of the display, and the rest, and writes report.json, report.csv (one\n"
+			"row for each scene, method and setting) and report.html. Ctrl-C ends it early with what it has.",
 		.examples = "  pursuit report\n"
 					"      all scenes and methods, about ten minutes on two cores\n"
 					"  pursuit report --scenes tower,fan --methods hold,grid --n 2 --out before\n"

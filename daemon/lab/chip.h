@@ -21,12 +21,12 @@
 #define CHIP_NAME_BYTES 32u
 
 struct chip_params {
-	const char *chip;  /* path, name ("gpiochip0") or label; "": the first that has all lines, which must be names */
-	const char *lines; /* offsets or names, separated by commas */
+	const char *chip;   /* path, name ("gpiochip0") or label; "": the first that has all lines, which must be names */
+	const char *lines;  /* offsets or names, separated by commas */
 	const char *option; /* what the lines' list is called in messages: "gpio-line" */
-	bool input;        /* one line, both edges */
+	bool input;         /* one line, both edges */
 	bool active_low;
-	uint32_t levels;   /* of outputs, from the moment they are requested */
+	uint32_t levels; /* of outputs, from the moment they are requested */
 };
 
 struct chip_edge {

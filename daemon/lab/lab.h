@@ -30,8 +30,8 @@ struct lab_params {
 	const struct lab_settings *settings; /* must live as long */
 	struct clock *clock;                 /* the real one: threads wait with the kernel's */
 	const struct log *log;
-	double period_ns;                    /* of the refresh that is wished for; the display's own is learned from flips */
-	const char *header;                  /* lines for the top of the latency log: version, settings */
+	double period_ns;   /* of the refresh that is wished for; the display's own is learned from flips */
+	const char *header; /* lines for the top of the latency log: version, settings */
 };
 
 /* Does any setting need it? */
@@ -59,7 +59,7 @@ void lab_flip(struct lab *lab, const struct presenter_flip *flip);
  * number noted.
  */
 void lab_mark_picture(struct lab *lab, struct presenter_image *image, uint64_t serial, uint64_t vblank,
-                      enum points_show show);
+					  enum points_show show);
 /* A vblank is over: what the render thread knows about it (all but flip, event, edge, photon). */
 void lab_tell(struct lab *lab, const struct points *points);
 

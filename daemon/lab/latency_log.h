@@ -20,7 +20,7 @@ int latency_log_check(const char *path, struct error *error);
 
 /* header: lines without #, for the top. NULL with a sentence. */
 struct latency_log *latency_log_create(const char *path, const char *header, const struct log *log,
-                                       struct error *error);
+									   struct error *error);
 /* Writes what is left. NULL accepted. */
 void latency_log_destroy(struct latency_log **log);
 

@@ -20,11 +20,11 @@ struct lines {
 	struct chip_params params; /* levels: what outputs are requested with */
 	const struct log *log;
 	bool wanted;
-	struct chip *chip;         /* NULL: not there now */
+	struct chip *chip; /* NULL: not there now */
 	uint64_t retry_ns, delay_ns;
-	uint64_t check_ns;         /* when a quiet input is looked after next */
-	uint64_t failures;         /* times that they were lost or could not be had */
-	char text[256];            /* "gpiochip0 (gpio-sim.0) 17", or what is wrong */
+	uint64_t check_ns; /* when a quiet input is looked after next */
+	uint64_t failures; /* times that they were lost or could not be had */
+	char text[256];    /* "gpiochip0 (gpio-sim.0) 17", or what is wrong */
 };
 
 /* Tries to open them if they are wanted, missing and due. True: they are newly there. */

@@ -35,10 +35,10 @@ enum match_want {
 };
 
 enum match_fate {
-	MATCH_HIT,      /* flip and edge */
-	MATCH_LOST,     /* a flip that an edge was expected of */
-	MATCH_SILENT,   /* a flip that none was expected of */
-	MATCH_STRAY,    /* an edge without a flip */
+	MATCH_HIT,    /* flip and edge */
+	MATCH_LOST,   /* a flip that an edge was expected of */
+	MATCH_SILENT, /* a flip that none was expected of */
+	MATCH_STRAY,  /* an edge without a flip */
 };
 
 struct match_result {

@@ -45,7 +45,7 @@ struct pattern_change {
 
 struct pattern {
 	enum pattern_kind kind;
-	uint32_t lines;     /* 1 to PATTERN_LINES */
+	uint32_t lines; /* 1 to PATTERN_LINES */
 	uint64_t pulse_ns;
 	uint64_t offset_ns; /* after the flip */
 	uint32_t levels;    /* that stay, as planned; starts with the initial ones */

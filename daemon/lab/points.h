@@ -46,17 +46,17 @@ struct points {
 	uint64_t vblank;
 	uint64_t frame_id; /* of the real frame on display, 0 none */
 	uint64_t time[POINT_COUNT];
-	uint32_t set_ns;   /* how long the call that set the line took: the edge lies within so much before POINT_EDGE */
-	uint32_t code;     /* index in the sequence, or parity's count, of the picture on display */
-	uint32_t skipped;  /* vblanks just before this one that nobody handled */
+	uint32_t set_ns;  /* how long the call that set the line took: the edge lies within so much before POINT_EDGE */
+	uint32_t code;    /* index in the sequence, or parity's count, of the picture on display */
+	uint32_t skipped; /* vblanks just before this one that nobody handled */
 	float phase;
-	uint8_t show;      /* enum points_show */
-	uint8_t source;    /* enum presenter_time_source */
-	bool late;         /* the flip was handled only after the next vblank's time */
-	bool level;        /* of the photodiode patch on display */
-	bool edge_lost;    /* the pattern wanted an edge and no line was there to set */
-	bool photon_lost;  /* light was expected to change, and no input saw it */
-	char method[16];   /* that made the picture */
+	uint8_t show;     /* enum points_show */
+	uint8_t source;   /* enum presenter_time_source */
+	bool late;        /* the flip was handled only after the next vblank's time */
+	bool level;       /* of the photodiode patch on display */
+	bool edge_lost;   /* the pattern wanted an edge and no line was there to set */
+	bool photon_lost; /* light was expected to change, and no input saw it */
+	char method[16];  /* that made the picture */
 };
 
 #define POINTS_BYTES 136u
@@ -70,8 +70,8 @@ static inline const char *points_show_name(uint32_t show)
 
 static inline const char *point_name(uint32_t point)
 {
-	static const char *const names[POINT_COUNT] = {"submit", "intake", "target", "ready",
-												   "flip",   "event",  "edge",   "photon", "trigger"};
+	static const char *const names[POINT_COUNT] = {"submit", "intake", "target", "ready",  "flip",
+												   "event",  "edge",   "photon", "trigger"};
 	return point < POINT_COUNT ? names[point] : "unknown";
 }
 

@@ -38,7 +38,8 @@ bool rows_full(const struct rows *rows);
 struct row *rows_find(struct rows *rows, uint64_t vblank);
 /* The render thread's part: frame, picture, their time points. */
 void rows_tell(struct rows *rows, const struct points *points);
-/* Takes the oldest row if it is complete, too old, or `force`d. What is still open becomes unknown, and is noted as lost. */
+/* Takes the oldest row if it is complete, too old, or `force`d. What is still open becomes unknown, and is noted as
+ * lost. */
 bool rows_take(struct rows *rows, uint64_t now_ns, bool force, struct points *points);
 /* When the oldest gets too old; UINT64_MAX for none. */
 uint64_t rows_next(const struct rows *rows);

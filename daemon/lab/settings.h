@@ -22,18 +22,18 @@ enum lab_patch {
 
 struct lab_settings {
 	bool latency;
-	char latency_log[512];   /* "": none; .csv or .bin */
-	uint32_t priority;       /* real-time, 0 none */
+	char latency_log[512]; /* "": none; .csv or .bin */
+	uint32_t priority;     /* real-time, 0 none */
 	/* outputs */
-	char gpio_chip[104];     /* "": the first that fits */
-	char gpio_line[256];     /* "": no marker */
-	uint32_t pattern;        /* enum pattern_kind */
+	char gpio_chip[104]; /* "": the first that fits */
+	char gpio_line[256]; /* "": no marker */
+	uint32_t pattern;    /* enum pattern_kind */
 	uint32_t pulse_us;
 	uint32_t offset_us;
 	bool active_low;
-	uint32_t initial_level;  /* 0 low, 1 high */
-	uint32_t final_level;    /* enum lab_final */
-	char strobe_line[32];    /* "": no strobe */
+	uint32_t initial_level; /* 0 low, 1 high */
+	uint32_t final_level;   /* enum lab_final */
+	char strobe_line[32];   /* "": no strobe */
 	double strobe_phase, strobe_duty, strobe_limit;
 	bool strobe_active_low;
 	/* inputs */
@@ -42,9 +42,9 @@ struct lab_settings {
 	uint32_t debounce_us;
 	uint32_t photon_least_us, photon_most_us; /* most 0: by the refresh rate */
 	/* the patch */
-	uint32_t patch;          /* enum lab_patch */
-	uint32_t patch_corner;   /* 0 top left, 1 top right, 2 bottom left, 3 bottom right */
-	uint32_t patch_size;     /* pixels */
+	uint32_t patch;        /* enum lab_patch */
+	uint32_t patch_corner; /* 0 top left, 1 top right, 2 bottom left, 3 bottom right */
+	uint32_t patch_size;   /* pixels */
 };
 
 #endif

@@ -32,8 +32,8 @@ enum span_kind {
 struct span_info {
 	const char *name; /* "flip_to_edge" */
 	enum point from, to;
-	bool real_only;   /* only first showings of real frames */
-	bool new_only;    /* only vblanks that show a new picture */
+	bool real_only; /* only first showings of real frames */
+	bool new_only;  /* only vblanks that show a new picture */
 	const char *help;
 };
 

@@ -52,7 +52,7 @@ struct lab {
 	struct lines marker, strobe_lines, photodiode, trigger;
 	struct pattern pattern;
 	struct schedule schedule;
-	uint32_t levels;  /* of the marker, as set */
+	uint32_t levels; /* of the marker, as set */
 	uint64_t edges, late_changes;
 	struct strobe strobe;
 	uint64_t strobe_due_ns, strobe_off_ns; /* LAB_NEVER: none */

@@ -42,8 +42,8 @@ void camera_path_valid(const struct camera_path *path, uint8_t *valid);
 /* Exposes the camera, which starts zeroed, to a picture for a share of the window: adds weight x light. */
 struct camera_exposure {
 	const light_pixel *picture;
-	float moment; /* in the window: -1 its beginning, 1 its end */
-	float weight; /* all weights of a window sum to 1 */
+	float moment;      /* in the window: -1 its beginning, 1 its end */
+	float weight;      /* all weights of a window sum to 1 */
 	uint32_t row_step; /* only rows that are a multiple of it; 1: all */
 };
 void camera_expose(const struct camera_path *path, const struct camera_exposure *exposure, light_pixel *camera);

@@ -35,7 +35,7 @@ struct inspect_view {
 	bool forward;
 	bool usable_motion; /* neither a cut nor flagged invalid */
 	bool has_jitter;
-	float jitter[2]; /* pixels */
+	float jitter[2];   /* pixels */
 	uint64_t frame_id; /* counts the client's frames, those that never arrived included */
 	uint64_t time_ns;
 	uint64_t real_interval_ns, motion_interval_ns; /* as declared, 0 unknown */

@@ -16,7 +16,7 @@ typedef float light_pixel __attribute__((vector_size(16)));
 #define LIGHT_STEPS 65536u
 
 struct light_transfer {
-	float light[256];         /* of a code value */
+	float light[256];          /* of a code value */
 	uint8_t code[LIGHT_STEPS]; /* nearest code value of light i / (LIGHT_STEPS - 1) */
 };
 

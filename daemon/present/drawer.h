@@ -34,7 +34,7 @@ bool drawer_destroy(struct drawer **drawer);
  * Its memory must stay as it is until drawer_wait() returns true. Only when none is under way.
  */
 void drawer_order(struct drawer *drawer, const struct presenter_image *image, uint32_t width, uint32_t height,
-                  uint32_t swaps);
+				  uint32_t swaps);
 /* Waits for it until a time of CLOCK_MONOTONIC. True: done, or none was under way. */
 bool drawer_wait(struct drawer *drawer, uint64_t until_ns, struct drawer_swap *swap);
 

@@ -101,7 +101,8 @@ static void judge_swap(struct glfw *self, bool back)
 	self->missing = back ? 0 : self->missing + 1;
 	self->quick = back ? self->quick + 1 : 0;
 	if (!self->by_clock && self->missing >= MISSING_SWAPS) {
-		log_info(self->pictures.params.log, "glfw: swaps take too long; vblanks do not wait for them until they are quick");
+		log_info(self->pictures.params.log,
+				 "glfw: swaps take too long; vblanks do not wait for them until they are quick");
 		self->by_clock = true;
 	} else if (self->by_clock && self->quick >= QUICK_SWAPS) {
 		log_info(self->pictures.params.log, "glfw: swaps are quick again");

@@ -19,7 +19,7 @@ struct glx_sync {
 	unsigned long drawable;
 	int (*get_values)(void *display, unsigned long drawable, int64_t *ust, int64_t *msc, int64_t *sbc);
 	int (*wait_for_sbc)(void *display, unsigned long drawable, int64_t target, int64_t *ust, int64_t *msc,
-	                    int64_t *sbc);
+						int64_t *sbc);
 };
 
 /* Are they there, and of the clock now_ns comes from? */

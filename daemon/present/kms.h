@@ -40,8 +40,8 @@ struct kms {
 	struct presenter_params params;
 	struct kms_device *device;
 	struct kms_console console;
-	int hotplug, wake;  /* -1: none */
-	char display[256];  /* mode and connector */
+	int hotplug, wake; /* -1: none */
+	char display[256]; /* mode and connector */
 	uint64_t guard_ns;
 	struct kms_buffer backdrop; /* black: before the first picture */
 	pthread_t thread;

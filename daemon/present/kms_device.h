@@ -33,7 +33,7 @@ struct kms_device_params {
 	const char *device;    /* path; NULL or "": the first that has a display */
 	const char *connector; /* name like "HDMI-A-1"; NULL or "": the first that a display is plugged into */
 	struct kms_mode_wish mode;
-	bool legacy;           /* the older calls even where there are atomic ones */
+	bool legacy; /* the older calls even where there are atomic ones */
 };
 
 /* A buffer in memory that the controller scans out: BGRX8, rows top to bottom. */

@@ -20,9 +20,9 @@ struct kms_mode {
 	uint32_t clock_khz;
 	uint16_t width, hsync_start, hsync_end, htotal;
 	uint16_t height, vsync_start, vsync_end, vtotal;
-	uint32_t flags;      /* the kernel's DRM_MODE_FLAG_*: of sync signals; others make a mode unfit */
-	bool preferred;      /* the display likes it best */
-	bool made;           /* not listed by the display */
+	uint32_t flags; /* the kernel's DRM_MODE_FLAG_*: of sync signals; others make a mode unfit */
+	bool preferred; /* the display likes it best */
+	bool made;      /* not listed by the display */
 };
 
 /* What is asked for; zeroed: any size. */

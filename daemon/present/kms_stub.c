@@ -3,4 +3,5 @@
 
 #include "daemon/present/presenter.h"
 
-const struct presenter_impl presenter_kms = {.name = "kms", .description = "a display without any compositor (not built in)"};
+const struct presenter_impl presenter_kms = {.name = "kms",
+											 .description = "a display without any compositor (not built in)"};

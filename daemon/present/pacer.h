@@ -51,29 +51,29 @@ enum pacer_show {
 	PACER_NOTHING = 0, /* no real frame yet */
 	PACER_REAL,        /* first showing of the newest real frame */
 	PACER_IN_BETWEEN,  /* extrapolated to `phase` */
-	PACER_REPEAT,      /* the same picture as the vblank before: the stream pauses, or display at most as fast as stream */
+	PACER_REPEAT, /* the same picture as the vblank before: the stream pauses, or display at most as fast as stream */
 };
 
 struct pacer_decision {
 	enum pacer_show show;
 	uint64_t frame_id;
 	uint64_t target_ns;
-	double phase;        /* of target_ns; for PACER_REAL 0 if |phase| <= PACER_PLAIN_PHASE */
-	uint32_t n;          /* vblanks that this real frame is expected to fill, 1 to 8 */
-	double last_phase;   /* of its last expected in-between */
+	double phase;         /* of target_ns; for PACER_REAL 0 if |phase| <= PACER_PLAIN_PHASE */
+	uint32_t n;           /* vblanks that this real frame is expected to fill, 1 to 8 */
+	double last_phase;    /* of its last expected in-between */
 	uint64_t interval_ns; /* T as the pacer knows it; 0 unknown */
 };
 
 struct pacer {
 	struct pacer_params params;
-	struct pacer_frame frame;      /* newest */
+	struct pacer_frame frame; /* newest */
 	bool has_frame, frame_is_new, passes_through;
-	uint64_t interval_ns;          /* T; 0 unknown */
-	int64_t delay_ns;              /* display delay */
+	uint64_t interval_ns; /* T; 0 unknown */
+	int64_t delay_ns;     /* display delay */
 	struct interval interval;
 	struct delay delay;
-	uint64_t first_vblank;         /* of the newest real frame's first showing */
-	uint32_t n;                    /* of the newest real frame, once shown */
+	uint64_t first_vblank; /* of the newest real frame's first showing */
+	uint32_t n;            /* of the newest real frame, once shown */
 	double last_phase;
 };
 

@@ -21,7 +21,7 @@ struct pictures {
 	pthread_mutex_t lock; /* for all below */
 	pthread_cond_t wake;  /* of the presenter's thread; waits by CLOCK_MONOTONIC */
 	struct grid grid;
-	uint64_t lead_ns;     /* a picture must be queued so long before its vblank */
+	uint64_t lead_ns; /* a picture must be queued so long before its vblank */
 	struct flips flips;
 	uint64_t next_vblank; /* the first one not handled */
 	bool running;         /* vblanks are handled */
@@ -29,8 +29,8 @@ struct pictures {
 	struct pictures_memory {
 		uint8_t *data;
 		size_t size;
-		uint64_t holds; /* as struct presenter_image says; 0 while it is acquired */
-	} memory[FLIPS_IMAGES]; /* of an acquired picture: the render thread's; else as `shape` says */
+		uint64_t holds;                          /* as struct presenter_image says; 0 while it is acquired */
+	} memory[FLIPS_IMAGES];                      /* of an acquired picture: the render thread's; else as `shape` says */
 	struct presenter_image shapes[FLIPS_IMAGES]; /* as acquired last */
 };
 

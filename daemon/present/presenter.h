@@ -53,8 +53,9 @@ enum presenter_shown {
 
 /* Where flip_ns comes from. */
 enum presenter_time_source {
-	PRESENTER_TIME_ESTIMATED = 0,  /* when the call that shows a picture came back: later than the flip by an unknown time */
-	PRESENTER_TIME_TIMER,          /* there is no display: when the timer of the grid fired */
+	PRESENTER_TIME_ESTIMATED =
+		0,                /* when the call that shows a picture came back: later than the flip by an unknown time */
+	PRESENTER_TIME_TIMER, /* there is no display: when the timer of the grid fired */
 	PRESENTER_TIME_DISPLAY_SERVER, /* told by the display server (OML_sync_control, presentation feedback) */
 	PRESENTER_TIME_KERNEL,         /* the kernel's event of the page flip */
 	PRESENTER_TIME_SOURCES,
@@ -69,11 +70,11 @@ struct presenter_flip {
 	uint64_t flip_ns;   /* when it was shown, as time_source knows it */
 	uint64_t sequence;  /* the display's own count of vblanks, 0 unknown */
 	enum presenter_time_source time_source;
-	uint64_t serial;    /* of the picture on display, 0 none */
+	uint64_t serial; /* of the picture on display, 0 none */
 	uint64_t group;
 	enum presenter_shown shown;
-	bool late;          /* handled only after the next vblank's time */
-	uint32_t skipped;   /* vblanks just before this one that were not handled at all */
+	bool late;        /* handled only after the next vblank's time */
+	uint32_t skipped; /* vblanks just before this one that were not handled at all */
 };
 
 /* A key was pressed. */
@@ -82,12 +83,12 @@ struct presenter_key {
 	uint64_t time_ns; /* when the presenter saw it */
 };
 #define PRESENTER_KEY_ESCAPE 0x1bu
-#define PRESENTER_KEY_F1     0x110001u /* beyond Unicode */
-#define PRESENTER_KEY_CLOSE  0x110100u /* the window's close button */
+#define PRESENTER_KEY_F1 0x110001u    /* beyond Unicode */
+#define PRESENTER_KEY_CLOSE 0x110100u /* the window's close button */
 
 /* What presenters with a display want to know; each takes what concerns it. Zeroed: the defaults. */
 struct presenter_options {
-	const char *monitor;    /* name or number; NULL or "": the primary one */
+	const char *monitor; /* name or number; NULL or "": the primary one */
 	bool fullscreen;
 	uint32_t width, height; /* of a window; 0: as the first picture */
 	const char *connector;  /* NULL or "": the first that is connected */
@@ -143,10 +144,10 @@ struct presenter_impl {
 	 * Starts the vblank events if they had stopped. -ETIME: that vblank is over; the picture stays acquired.
 	 */
 	int (*present)(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
-	               uint64_t serial);
+				   uint64_t serial);
 	/* The picture for vblanks that nothing is queued for while this group is on display; replaces one of the group. */
 	void (*set_standby)(struct presenter *presenter, const struct presenter_image *image, uint64_t group,
-	                    uint64_t serial);
+						uint64_t serial);
 	void (*clear_standby)(struct presenter *presenter);
 	/* The picture stays, no vblank is reported until the next present(). */
 	void (*pause)(struct presenter *presenter);

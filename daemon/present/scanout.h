@@ -30,15 +30,15 @@ struct scanout_picture {
 /* Zeroed: nothing queued, nothing shown, vblank 0 is the first that is reported. */
 struct scanout {
 	struct flips flips;
-	enum presenter_shown chosen_as;        /* how flips.front came to be the front */
+	enum presenter_shown chosen_as; /* how flips.front came to be the front */
 	struct scanout_picture under_way, shown;
-	uint64_t under_way_vblank;             /* the vblank it is meant for */
+	uint64_t under_way_vblank; /* the vblank it is meant for */
 	enum presenter_shown under_way_as;
-	bool fresh, fresh_late;                /* `shown` was not reported yet */
+	bool fresh, fresh_late; /* `shown` was not reported yet */
 	enum presenter_shown fresh_as;
-	struct presenter_flip waiting;         /* a vblank whose flip has not been heard of */
+	struct presenter_flip waiting; /* a vblank whose flip has not been heard of */
 	bool is_waiting;
-	uint64_t next_vblank;                  /* the first that was not reported */
+	uint64_t next_vblank; /* the first that was not reported */
 };
 
 /* Reports begin at this vblank; one that is still waited for is given up. */

@@ -133,9 +133,9 @@ static void test_json(void)
 	stats_add_report(&stats, &report);
 	json_t *object = stats_json(&stats);
 	static const char *const names[] = {
-		"real_frames", "in_between_frames", "displayed_frames", "displayed_hz", "late_in_betweens", "lost_real_frames",
-		"engine_ms",   "submit_to_flip_ms", "passes",           "left_out",     "on_time",
-		"governor",    "vblank_ms"};
+		"real_frames",      "in_between_frames", "displayed_frames",  "displayed_hz", "late_in_betweens",
+		"lost_real_frames", "engine_ms",         "submit_to_flip_ms", "passes",       "left_out",
+		"on_time",          "governor",          "vblank_ms"};
 	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
 		CHECK(json_object_get(object, names[i]) != NULL);
 	CHECK_NEAR(json_number_value(json_object_get(object, "displayed_hz")), 116, 0.1);

@@ -20,7 +20,8 @@ struct bench_times {
  * n - 1 in-betweens (n at most 8), into memory. `unchanged`: the first of them over and over, by a client that says so,
  * into memory that keeps what it holds. Ends the program if the engine fails.
  */
-struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n, bool unchanged);
+struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n,
+							  bool unchanged);
 
 /* "auto", "surfaceless", "osmesa", "cpu", ...; an engine of that kind, or the end of the program. */
 struct engine *bench_engine(const char *context, const char *method);

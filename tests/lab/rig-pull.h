@@ -4,8 +4,8 @@
 /*
  * Plays display and photodiode: pulls an input line of gpio-sim to the level of
  * an alternating patch, 2 to 6 ms after each flip. Every 17th change is lost,
- * and with it the next one, since the line is there already; every 23rd bounces. What it did is written line by line: vblank, then the
- * times before and after the pull, 0 0 for a lost one.
+ * and with it the next one, since the line is there already; every 23rd bounces. What it did is written line by line:
+ * vblank, then the times before and after the pull, 0 0 for a lost one.
  */
 #ifndef PURSUIT_TESTS_LAB_RIG_PULL_H
 #define PURSUIT_TESTS_LAB_RIG_PULL_H

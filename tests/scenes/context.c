@@ -23,8 +23,9 @@ bool test_context_init(struct test_context *context, bool es)
 	context->display = display;
 	if (!eglBindAPI(es ? EGL_OPENGL_ES_API : EGL_OPENGL_API))
 		return fail(context, "eglBindAPI");
-	const EGLint gl_attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-	                                EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+	const EGLint gl_attributes[] = {
+		EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+		EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
 	const EGLint es_attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
 	context->context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, es ? es_attributes : gl_attributes);
 	if (context->context == EGL_NO_CONTEXT)

@@ -22,8 +22,8 @@ static inline void picture_init(struct picture *picture, uint32_t width, uint32_
 {
 	size_t count = (size_t)width * height;
 	*picture = (struct picture){.width = width, .height = height, .count = count};
-	picture->pixels = (struct scene_pixels){calloc(count, 4), calloc(count, 4), calloc(count, 8), calloc(count, 8),
-	                                        calloc(count, 4), calloc(count, 4)};
+	picture->pixels = (struct scene_pixels){calloc(count, 4), calloc(count, 4), calloc(count, 8),
+											calloc(count, 8), calloc(count, 4), calloc(count, 4)};
 }
 
 static inline void picture_finish(struct picture *picture)
@@ -53,11 +53,11 @@ static inline bool picture_take(struct picture *picture, struct scene *scene, do
 static inline bool picture_equal(const struct picture *a, const struct picture *b)
 {
 	return memcmp(a->pixels.color, b->pixels.color, a->count * 4) == 0 &&
-	       memcmp(a->pixels.depth, b->pixels.depth, a->count * 4) == 0 &&
-	       memcmp(a->pixels.backward, b->pixels.backward, a->count * 8) == 0 &&
-	       memcmp(a->pixels.forward, b->pixels.forward, a->count * 8) == 0 &&
-	       memcmp(a->pixels.object_id, b->pixels.object_id, a->count * 4) == 0 &&
-	       memcmp(a->pixels.ui, b->pixels.ui, a->count * 4) == 0;
+		   memcmp(a->pixels.depth, b->pixels.depth, a->count * 4) == 0 &&
+		   memcmp(a->pixels.backward, b->pixels.backward, a->count * 8) == 0 &&
+		   memcmp(a->pixels.forward, b->pixels.forward, a->count * 8) == 0 &&
+		   memcmp(a->pixels.object_id, b->pixels.object_id, a->count * 4) == 0 &&
+		   memcmp(a->pixels.ui, b->pixels.ui, a->count * 4) == 0;
 }
 
 #endif

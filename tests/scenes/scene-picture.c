@@ -69,8 +69,8 @@ int main(int argc, char **argv)
 	}
 	struct scene_request request = {.time = time, .time_previous = time - 1.0 / 60.0, .time_next = time + 1.0 / 60.0};
 	struct scene_textures textures;
-	struct scene_pixels pixels = {malloc(count * 4), malloc(count * 4), malloc(count * 8), NULL, malloc(count * 4),
-	                              malloc(count * 4)};
+	struct scene_pixels pixels = {malloc(count * 4), malloc(count * 4), malloc(count * 8), NULL,
+								  malloc(count * 4), malloc(count * 4)};
 	uint8_t *out = malloc(count * 4);
 	bool ok = scene_render(scene, &request, &textures, NULL);
 	uint8_t *ui = pixels.ui;

@@ -69,8 +69,8 @@ static void same_request_gives_same_bits(void)
 static void any_size_and_time(void)
 {
 	static const uint32_t sizes[][2] = {{1, 1}, {7, 5}, {333, 77}, {50, 200}};
-	static const double times[][3] = {{-0.1, 0.0, 0.1},     {119.9, 120.0, 120.1},  {-7.3, -7.2, -7.1},
-	                                  {1e9, 1e9 + 0.02, 1e9}, {-1e300, 1e300, 1e308}, {500.0, 3.0, -40.0}};
+	static const double times[][3] = {{-0.1, 0.0, 0.1},       {119.9, 120.0, 120.1},  {-7.3, -7.2, -7.1},
+									  {1e9, 1e9 + 0.02, 1e9}, {-1e300, 1e300, 1e308}, {500.0, 3.0, -40.0}};
 	for (const struct scene_info *info = scene_list(); info->name; info++) {
 		for (size_t s = 0; s < sizeof(sizes) / sizeof(sizes[0]); s++) {
 			struct scene *scene = create(info->name, sizes[s][0], sizes[s][1]);

@@ -15,10 +15,10 @@
 
 /* Fills BGRA8 or, with `rgba`, RGBA8; numbers below 2^24. At least 2 pixels wide. */
 void code_write(uint8_t *pixels, size_t stride, uint32_t width, uint32_t height, bool rgba, uint32_t client,
-                uint32_t frame);
+				uint32_t frame);
 
 /* Is this BGRA8 exactly one picture? Its numbers, of the first pixels, in any case. Alpha does not count. */
 bool code_read(const uint8_t *pixels, size_t stride, uint32_t width, uint32_t height, uint32_t *client,
-               uint32_t *frame);
+			   uint32_t *frame);
 
 #endif
