@@ -139,6 +139,8 @@ static int check_request(const struct engine *engine, const struct engine_image 
 	if (image->data && (image->stride % 4 || image->stride < 4 * (size_t)engine->width))
 		return error_set(error, -EINVAL, "the image's stride is %zu, must be a multiple of 4 and at least %zu",
 						 image->stride, 4 * (size_t)engine->width);
+	if (!image->data && image->texture && !engine->executor->info.brought)
+		return error_set(error, -EINVAL, "the image is a texture, but the engine's context is its own");
 	return 0;
 }
 
@@ -154,15 +156,17 @@ static int show(struct engine *engine, const struct engine_request *request, str
 	if (result < 0)
 		return result;
 	engine->job.picture = picture;
-	if (picture == PICTURE_ORIGINAL && image->data && held == engine->content) {
-		report_leave_out(&engine->report, "read", "unchanged");
+	const enum pass_id leave = image->data ? PASS_READ : PASS_COPY;
+	const bool leaves = image->data || image->texture;
+	if (picture == PICTURE_ORIGINAL && leaves && held == engine->content) {
+		report_leave_out(&engine->report, leave == PASS_READ ? "read" : "copy", "unchanged");
 		image->holds = held;
 		return 0;
 	}
 	result = pass_run(engine, PASS_UI, error);
-	if (result == 0 && image->data)
-		result = pass_run(engine, PASS_READ, error);
-	if (result == 0 && image->data)
+	if (result == 0 && leaves)
+		result = pass_run(engine, leave, error);
+	if (result == 0 && leaves)
 		image->holds = picture == PICTURE_ORIGINAL ? engine->content : 0;
 	else
 		engine->executor->ops->flush(engine->executor);

@@ -50,9 +50,27 @@ enum engine_curve {
 	ENGINE_CURVE_GAMMA,
 };
 
+/*
+ * A GL context (4.3 core) that somebody else made and keeps, in a share group with the one that shows the pictures, so
+ * that these need not leave GL. All functions are called on the engine's thread; between calls of the engine others may
+ * bind textures of unit 0 there, and nothing else.
+ */
+struct engine_context {
+	const char *name;            /* static */
+	bool (*enter)(void *data);   /* makes it current on this thread; false: it is lost */
+	void (*release)(void *data); /* leaves none current; also once it is lost */
+	void (*(*find)(const char *name))(void);
+	void *data;
+};
+
 /* A zeroed struct means the defaults. */
 struct engine_params {
 	enum engine_context_kind context;
+	/*
+	 * Lives longer than the engine. Taken instead of a context of the engine's own for EGL_SURFACELESS, and for AUTO if
+	 * it is that of a GPU; NULL: none.
+	 */
+	const struct engine_context *brought;
 	uint32_t device;    /* index, for ENGINE_CONTEXT_EGL_DEVICE */
 	bool gles;          /* a GLES 3.1 context instead of GL 4.3 core */
 	uint32_t threads;   /* of the CPU executor, the caller's among them, 1 to 8; 0: one for each CPU we may run on */
@@ -84,14 +102,19 @@ struct engine_request {
 
 /* Where a displayed frame goes. BGRA8, rows top to bottom, alpha 255. */
 struct engine_image {
-	uint8_t *data; /* caller's memory, stride x height bytes; NULL: leave it in the engine's texture */
+	uint8_t *data; /* caller's memory, stride x height bytes; NULL: to `texture`, or only to the engine's own picture */
 	size_t stride; /* bytes, at least 4 x width, a multiple of 4 */
 	/*
-	 * What the memory holds, as engine_render() left it here; 0: unknown, which is always right. If it holds just the
-	 * picture that is asked for nothing is written: keep it with the memory, set it to 0 where something else is
-	 * written.
+	 * What memory or texture holds, as engine_render() left it here; 0: unknown, which is always right. If it holds
+	 * just the picture that is asked for nothing is written: keep it with the memory, set it to 0 where something else
+	 * is written.
 	 */
 	uint64_t holds;
+	/*
+	 * With data NULL, of an engine in a brought context: a texture of its share group, BGRA8, as large as the frame's
+	 * colour, row 0 on top. 0: none. The pixels are there when engine_render() returns: whoever binds it sees them.
+	 */
+	uint32_t texture;
 };
 
 struct engine_begin_params {
@@ -108,7 +131,7 @@ struct engine_report {
 	uint64_t frame_id;
 	uint32_t pass_count;
 	struct engine_pass_report {
-		const char *name; /* "analyse", "upload", "pyramid", "compensate", "warp", "ui", "read"; static */
+		const char *name; /* "analyse", "upload", "pyramid", "compensate", "warp", "ui", "read", "copy"; static */
 		uint32_t runs;
 		double ms; /* GPU time (timer queries), else CPU time with finish_each_pass, else CPU time of the call */
 	} passes[ENGINE_MAX_PASSES];
@@ -125,10 +148,11 @@ struct engine_report {
 };
 
 struct engine_info {
-	const char *context;  /* "egl-surfaceless", "egl-device", "osmesa", "cpu" */
+	const char *context;  /* "egl-surfaceless", "egl-device", "osmesa", "cpu"; of a brought one its name */
 	const char *renderer; /* GL_RENDERER; of the CPU: instruction set and threads */
 	const char *version;  /* GL_VERSION; "" */
 	bool software;        /* a CPU renderer */
+	bool brought;         /* in the context that was brought */
 };
 
 struct engine;

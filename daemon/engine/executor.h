@@ -30,6 +30,7 @@ enum pass_id {
 	PASS_WARP,       /* SHOWN from job.picture and LOW, by the mesh */
 	PASS_UI,         /* UI over job.picture; job.picture is SHOWN afterwards */
 	PASS_READ,       /* job.picture to job.image */
+	PASS_COPY,       /* job.picture to the texture of job.image, done when it returns */
 	PASS_COUNT,
 };
 

@@ -7,9 +7,17 @@
 #include <string.h>
 
 static const char *const names[PASS_COUNT] = {
-	[PASS_ANALYSE] = "analyse", [PASS_FIELD] = "field",     [PASS_PAINT] = "paint",           [PASS_PUT] = "put",
-	[PASS_UPLOAD] = "upload",   [PASS_PYRAMID] = "pyramid", [PASS_COMPENSATE] = "compensate", [PASS_WARP] = "warp",
-	[PASS_UI] = "ui",           [PASS_READ] = "read",
+	[PASS_ANALYSE] = "analyse",
+	[PASS_FIELD] = "field",
+	[PASS_PAINT] = "paint",
+	[PASS_PUT] = "put",
+	[PASS_UPLOAD] = "upload",
+	[PASS_PYRAMID] = "pyramid",
+	[PASS_COMPENSATE] = "compensate",
+	[PASS_WARP] = "warp",
+	[PASS_UI] = "ui",
+	[PASS_READ] = "read",
+	[PASS_COPY] = "copy",
 };
 
 int pass_run(struct engine *engine, enum pass_id id, struct error *error)

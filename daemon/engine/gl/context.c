@@ -25,7 +25,8 @@ static void describe(struct context *context)
 {
 	const char *renderer = (const char *)context->gl.GetString(GL_RENDERER);
 	const char *version = (const char *)context->gl.GetString(GL_VERSION);
-	context->info.context = context->ops->name;
+	if (!context->info.context)
+		context->info.context = context->ops->name;
 	context->info.renderer = renderer ? renderer : "unknown";
 	context->info.version = version ? version : "unknown";
 	context->info.software = is_software(context->info.renderer);
@@ -60,15 +61,33 @@ static void step_aside(void)
 	entered = NULL;
 }
 
-struct context *context_create(const struct engine_params *params, struct error *error)
+static struct context *take_over(struct context *context)
 {
-	step_aside();
-	struct context *context = create_kind(params, error);
 	if (!context)
 		return NULL;
 	entered = context;
 	describe(context);
 	return context;
+}
+
+/* The one that was brought, if it is what was asked for. */
+static struct context *create_brought(const struct engine_params *params)
+{
+	struct error why_not;
+	const bool any = params->context == ENGINE_CONTEXT_EGL_SURFACELESS;
+	if (!params->brought || params->gles || (!any && params->context != ENGINE_CONTEXT_AUTO))
+		return NULL;
+	struct context *context = take_over(context_brought_create(params->brought, &why_not));
+	if (context && context->info.software && !any)
+		context_destroy(&context);
+	return context;
+}
+
+struct context *context_create(const struct engine_params *params, struct error *error)
+{
+	step_aside();
+	struct context *context = create_brought(params);
+	return context ? context : take_over(create_kind(params, error));
 }
 
 int context_enter(struct context *context, struct error *error)

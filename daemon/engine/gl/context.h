@@ -19,7 +19,7 @@ struct context;
 
 /* All functions are mandatory and called on the thread that made the context. */
 struct context_ops {
-	const char *name; /* "egl-surfaceless", "egl-device", "osmesa" */
+	const char *name; /* "egl-surfaceless", "egl-device", "osmesa", "brought" */
 	/* Makes it current if it is not; false: it is lost. */
 	bool (*enter)(struct context *context);
 	/* Leaves no context of this kind current on the thread. */
@@ -48,5 +48,7 @@ struct context *context_egl_device_create(uint32_t index, bool gles, struct erro
 /* The first EGL device that is not a CPU renderer. */
 struct context *context_egl_gpu_create(bool gles, struct error *error);
 struct context *context_osmesa_create(struct error *error);
+/* Refuses what is older than GL 4.3. */
+struct context *context_brought_create(const struct engine_context *brought, struct error *error);
 
 #endif

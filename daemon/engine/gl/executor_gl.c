@@ -43,6 +43,7 @@ static void delete_objects(struct executor_gl *executor)
 		target_finish(&executor->levels[i], gl);
 	gl->DeleteFramebuffers(1, &executor->both_framebuffer);
 	gl->DeleteFramebuffers(1, &executor->depth_framebuffer);
+	gl->DeleteFramebuffers(1, &executor->copy_framebuffer);
 	gl->DeleteRenderbuffers(1, &executor->depth);
 	gl->DeleteVertexArrays(1, &executor->no_attributes);
 	gl->DeleteVertexArrays(1, &executor->tile_array);
@@ -123,6 +124,7 @@ static const struct executor_ops ops = {
 			[PASS_WARP] = &gl_pass_warp,
 			[PASS_UI] = &gl_pass_ui,
 			[PASS_READ] = &gl_pass_read,
+			[PASS_COPY] = &gl_pass_copy,
 		},
 	.enter = enter,
 	.destroy = destroy,

@@ -26,6 +26,7 @@ struct executor_gl {
 	float *tile_numbers;              /* on their way there */
 	size_t tile_capacity;
 	GLuint both_framebuffer;         /* REAL and BETWEEN at once */
+	GLuint copy_framebuffer;         /* of the texture that a picture is copied to */
 	GLuint no_attributes;            /* a vertex array with nothing in it */
 	GLuint depth, depth_framebuffer; /* SHOWN with depth; 0 until the first fold */
 	uint32_t depth_width, depth_height;
@@ -47,6 +48,6 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
 }
 
 extern const struct pass gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_put, gl_pass_warp, gl_pass_ui,
-	gl_pass_read;
+	gl_pass_read, gl_pass_copy;
 
 #endif

@@ -30,6 +30,7 @@
 	X(BufferSubData, BUFFERSUBDATA)                     \
 	X(CheckFramebufferStatus, CHECKFRAMEBUFFERSTATUS)   \
 	X(ClearBufferfv, CLEARBUFFERFV)                     \
+	X(ClientWaitSync, CLIENTWAITSYNC)                   \
 	X(CompileShader, COMPILESHADER)                     \
 	X(CreateProgram, CREATEPROGRAM)                     \
 	X(CreateShader, CREATESHADER)                       \
@@ -39,6 +40,7 @@
 	X(DeleteProgram, DELETEPROGRAM)                     \
 	X(DeleteRenderbuffers, DELETERENDERBUFFERS)         \
 	X(DeleteShader, DELETESHADER)                       \
+	X(DeleteSync, DELETESYNC)                           \
 	X(DeleteTextures, DELETETEXTURES)                   \
 	X(DeleteVertexArrays, DELETEVERTEXARRAYS)           \
 	X(DepthFunc, DEPTHFUNC)                             \
@@ -49,6 +51,7 @@
 	X(DrawElements, DRAWELEMENTS)                       \
 	X(Enable, ENABLE)                                   \
 	X(EnableVertexAttribArray, ENABLEVERTEXATTRIBARRAY) \
+	X(FenceSync, FENCESYNC)                             \
 	X(Finish, FINISH)                                   \
 	X(Flush, FLUSH)                                     \
 	X(FramebufferRenderbuffer, FRAMEBUFFERRENDERBUFFER) \

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* An engine in a context that was brought: what it leaves in a texture is, to the bit, what it reads back. */
+#include "tests/test.h"
+
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <errno.h>
+
+#include <GL/glcorearb.h>
+
+#include "daemon/engine/engine.h"
+#include "tests/engine/picture.h"
+
+#define WIDTH 321u
+#define HEIGHT 123u
+#define BYTES ((size_t)4 * WIDTH * HEIGHT)
+
+static struct {
+	EGLDisplay display;
+	EGLContext shows, draws; /* of one share group: the presenter's and the engine's */
+	bool lost;
+	PFNGLGENTEXTURESPROC gen_textures;
+	PFNGLBINDTEXTUREPROC bind_texture;
+	PFNGLTEXIMAGE2DPROC tex_image;
+	PFNGLGETTEXIMAGEPROC get_tex_image;
+} gl;
+
+static void find(const char *name, void *function)
+{
+	void (*found)(void) = eglGetProcAddress(name);
+	memcpy(function, &found, sizeof(found));
+}
+
+static EGLContext make_context(EGLContext share)
+{
+	const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3, EGL_NONE};
+	return eglCreateContext(gl.display, EGL_NO_CONFIG_KHR, share, attributes);
+}
+
+static bool make_current(EGLContext context)
+{
+	return eglMakeCurrent(gl.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context);
+}
+
+static bool start(void)
+{
+	gl.display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
+	if (!gl.display || !eglInitialize(gl.display, NULL, NULL) || !eglBindAPI(EGL_OPENGL_API))
+		return false;
+	gl.shows = make_context(EGL_NO_CONTEXT);
+	gl.draws = gl.shows ? make_context(gl.shows) : EGL_NO_CONTEXT;
+	find("glGenTextures", &gl.gen_textures);
+	find("glBindTexture", &gl.bind_texture);
+	find("glTexImage2D", &gl.tex_image);
+	find("glGetTexImage", &gl.get_tex_image);
+	return gl.draws != EGL_NO_CONTEXT;
+}
+
+static bool enter(void *data)
+{
+	(void)data;
+	return !gl.lost && make_current(gl.draws);
+}
+
+static void release(void *data)
+{
+	(void)data;
+	make_current(EGL_NO_CONTEXT);
+}
+
+static const struct engine_context brought = {
+	.name = "test", .enter = enter, .release = release, .find = eglGetProcAddress};
+
+static struct engine *make(const char *method, enum engine_context_kind kind)
+{
+	const struct engine_params params = {.method = method, .context = kind, .brought = &brought};
+	struct error error = {""};
+	struct engine *engine = engine_create(&params, &error);
+	if (!engine)
+		fprintf(stderr, "%s\n", error.text);
+	CHECK(engine != NULL);
+	return engine;
+}
+
+static uint32_t make_texture(void)
+{
+	GLuint texture;
+	gl.gen_textures(1, &texture);
+	gl.bind_texture(GL_TEXTURE_2D, texture);
+	gl.tex_image(GL_TEXTURE_2D, 0, GL_RGBA, WIDTH, HEIGHT, 0, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, NULL);
+	return texture;
+}
+
+/* As the other context sees it. */
+static void look(uint32_t texture, uint8_t *pixels)
+{
+	CHECK(make_current(gl.shows));
+	gl.bind_texture(GL_TEXTURE_2D, texture);
+	gl.get_tex_image(GL_TEXTURE_2D, 0, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV, pixels);
+}
+
+static uint32_t runs_of(struct engine *engine, const char *name)
+{
+	const struct engine_report *report = engine_get_report(engine);
+	for (uint32_t i = 0; i < report->pass_count; i++)
+		if (strcmp(report->passes[i].name, name) == 0)
+			return report->passes[i].runs;
+	return 0;
+}
+
+static void check_method(const char *method)
+{
+	static const struct engine_request requests[] = {{ENGINE_SHOW_REAL, 0.0},
+													 {ENGINE_SHOW_REAL, 0.2},
+													 {ENGINE_SHOW_IN_BETWEEN, 0.33},
+													 {ENGINE_SHOW_IN_BETWEEN, 0.66},
+													 {ENGINE_SHOW_PLAIN, 0.0}};
+	static uint8_t read[BYTES], left[BYTES];
+	const struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
+	struct engine *engine = make(method, ENGINE_CONTEXT_EGL_SURFACELESS);
+	const uint32_t texture = make_texture();
+	struct picture picture;
+	struct error error = {""};
+
+	CHECK_STRING(engine_get_info(engine)->context, "test");
+	CHECK(engine_get_info(engine)->brought);
+	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
+	picture_draw_layers(&picture, 0.0);
+	memset(picture_row(&picture, PURSUIT_ROLE_UI, 20), 0x60, (size_t)4 * WIDTH);
+	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]); i++) {
+		struct engine_image image = {.data = read, .stride = (size_t)4 * WIDTH}, target = {.texture = texture};
+		CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+		CHECK_INT(engine_render(engine, &requests[i], &target, &error), 0);
+		CHECK_INT(runs_of(engine, "read"), 0);
+		CHECK_INT(engine_get_report(engine)->bytes_down, 0);
+		look(texture, left);
+		CHECK_INT(engine_render(engine, &requests[i], &image, &error), 0);
+		CHECK_INT(runs_of(engine, "read"), 1);
+		CHECK(memcmp(read, left, BYTES) == 0);
+		CHECK(target.holds == image.holds);
+	}
+	picture_finish(&picture);
+	engine_destroy(&engine);
+}
+
+static void test_same_bits(void)
+{
+	for (const struct engine_method_info *method = engine_methods(); method->name; method++)
+		check_method(method->name);
+}
+
+/* What the texture holds is not copied again. */
+static void test_kept(void)
+{
+	const struct engine_begin_params begin = {.n = 1};
+	const struct engine_request request = {ENGINE_SHOW_PLAIN, 0.0};
+	struct engine *engine = make("hold", ENGINE_CONTEXT_EGL_SURFACELESS);
+	struct engine_image image = {.texture = make_texture()};
+	struct picture picture;
+	struct error error = {""};
+	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, 0);
+	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 3);
+	CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+	CHECK_INT(runs_of(engine, "copy"), 1);
+	image.holds = 0;
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+	CHECK_INT(runs_of(engine, "copy"), 2);
+	picture_finish(&picture);
+	engine_destroy(&engine);
+}
+
+/* One that was not asked for, that of a CPU renderer for AUTO, and a lost one. */
+static void test_not_taken(void)
+{
+	const struct engine_begin_params begin = {.n = 1};
+	const struct engine_request request = {ENGINE_SHOW_PLAIN, 0.0};
+	struct engine_image image = {.texture = 1};
+	struct engine *engine = make("hold", ENGINE_CONTEXT_CPU);
+	struct picture picture;
+	struct error error = {""};
+	picture_init(&picture, 8, 8, PURSUIT_FORMAT_BGRA8, 0);
+	CHECK(!engine_get_info(engine)->brought);
+	CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+	CHECK_INT(engine_render(engine, &request, &image, &error), -EINVAL);
+	CHECK(strstr(error.text, "texture") != NULL);
+	engine_destroy(&engine);
+
+	engine = make("hold", ENGINE_CONTEXT_AUTO);
+	CHECK(!engine_get_info(engine)->brought || !engine_get_info(engine)->software);
+	engine_destroy(&engine);
+
+	gl.lost = true;
+	engine = make("hold", ENGINE_CONTEXT_EGL_SURFACELESS);
+	CHECK(!engine_get_info(engine)->brought);
+	engine_destroy(&engine);
+	gl.lost = false;
+
+	engine = make("hold", ENGINE_CONTEXT_EGL_SURFACELESS);
+	CHECK(engine_get_info(engine)->brought);
+	gl.lost = true;
+	CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), -EIO);
+	engine_destroy(&engine);
+	gl.lost = false;
+	picture_finish(&picture);
+}
+
+int main(void)
+{
+	if (!start())
+		SKIP("no two GL contexts that share");
+	RUN(test_same_bits);
+	RUN(test_kept);
+	RUN(test_not_taken);
+	return test_result();
+}
