@@ -73,12 +73,13 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 	if (result == 0)
 		result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	/* Merged without a look at depths, since nothing folds at the last phase; but here it does. */
-	if (result == 0 && mesh->folds.count && !engine->plan.folded && mesh->count < engine->plan.index_count) {
+	if (result == 0 && !mesh->too_wild && mesh->folds.count && !engine->plan.folded &&
+		mesh->count < engine->plan.index_count) {
 		result = warp_mesh_begin(mesh, &engine->plan, -1.0f, error);
 		if (result == 0)
 			result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	}
-	if (result < 0 || (!mesh->torn.count && !mesh->folded_torn.count))
+	if (result < 0 || mesh->too_wild || (!mesh->torn.count && !mesh->folded_torn.count))
 		return result;
 	/* Stretch is convex in the phase: up to the last one, what is torn is also marked for blur. */
 	bool marked = engine->bend.bent ? phase == engine->last_phase : phase >= 0.0 && phase <= engine->last_phase;
@@ -101,6 +102,11 @@ int grid_show(struct engine *engine, enum engine_show show, double phase, enum p
 	int result = sort_mesh(engine, phase, error);
 	if (result < 0)
 		return result;
+	if (engine->mesh.too_wild) {
+		report_leave_out(&engine->report, "warp", "too-wild");
+		*picture = PICTURE_ORIGINAL;
+		return 0;
+	}
 	engine->job.picture = *picture;
 	engine->job.phase = phase;
 	result = pass_run(engine, PASS_WARP, error);

@@ -15,6 +15,11 @@
 /* A triangle that shrinks to less than this share of its area may be turned over by rounding. */
 #define NEARLY_FLAT 0.01f
 
+/* A triangle costs at least what so many pixels a side do, and drawing may cost so many pixels. */
+#define COST_MARGIN 8.0
+#define COST_PIXELS (UINT64_C(16) << 20)
+#define COST_PICTURES 16u
+
 /* Pixels a side: of L; of the pyramid, but never less than its coarsest texel; of the displaced picture. */
 #define LOW_TILE 8u
 #define LEVELS_TILE 16u
@@ -197,14 +202,32 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, uint32_t level, struct error
 	return 0;
 }
 
-/* What each triangle is by itself; marks where some turn over. */
+/* Length of an interval within 0 to size, with what a triangle costs however small it is. */
+static double cost_along(float from, float to, uint32_t size)
+{
+	from = larger(from, 0.0f);
+	to = lesser(to, (float)size);
+	return (to > from ? (double)(to - from) : 0.0) + COST_MARGIN;
+}
+
+/* Pixels that drawing a triangle may touch. */
+static double triangle_cost(const struct warp_mesh *mesh, uint32_t i, float phase)
+{
+	struct box box = triangle_box(mesh->plan->vertices, mesh->triangles + i, phase, 0.0f);
+	return cost_along(box.left, box.right, mesh->plan->width) * cost_along(box.top, box.bottom, mesh->plan->height);
+}
+
+/* What each triangle is by itself; marks where some turn over. Stops at what costs too much. */
 static void find_kinds(struct warp_mesh *mesh, float phase, bool tears)
 {
 	const struct plan_vertex *vertices = mesh->plan->vertices;
-	for (uint32_t i = 0; i < mesh->count; i += 3) {
+	const double most = (double)warp_mesh_most_pixels(mesh->plan->width, mesh->plan->height);
+	double cost = 0.0;
+	for (uint32_t i = 0; i < mesh->count && cost <= most; i += 3) {
 		mesh->kinds[i / 3] = KIND_PLAIN;
 		if (mesh->wildness[i / 3] * phase * phase < TAME)
 			continue;
+		cost += triangle_cost(mesh, i, phase);
 		struct map map = triangle_map(vertices, mesh->triangles + i, phase);
 		if (tears && stretches(map, 1.0f + (float)TEAR_FROM))
 			mesh->kinds[i / 3] = KIND_TORN;
@@ -213,6 +236,7 @@ static void find_kinds(struct warp_mesh *mesh, float phase, bool tears)
 		if (map.determinant < -NEARLY_FLAT)
 			mesh->kinds[i / 3] = KIND_HIDDEN;
 	}
+	mesh->too_wild = cost > most;
 }
 
 static void find_folds(struct warp_mesh *mesh, float phase)
@@ -226,12 +250,19 @@ static void find_folds(struct warp_mesh *mesh, float phase)
 	}
 }
 
+uint64_t warp_mesh_most_pixels(uint32_t width, uint32_t height)
+{
+	return COST_PIXELS + COST_PICTURES * (uint64_t)width * height;
+}
+
 int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_order, struct error *error)
 {
 	const struct plan *plan = mesh->plan;
 	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE))
 		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
 	find_kinds(mesh, phase, tears);
+	if (mesh->too_wild)
+		return 0;
 	if (mesh->folds.count)
 		find_folds(mesh, phase);
 	const unsigned all = KIND_TORN | KIND_FOLDED | KIND_HIDDEN;

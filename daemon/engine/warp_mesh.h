@@ -45,6 +45,7 @@ struct warp_mesh {
 	struct warp_list folded;      /* perhaps over each other, in drawing order */
 	struct warp_list folded_torn; /* these among them that are torn; if `keep_order` they are in `folded` too */
 	bool keep_order;
+	bool too_wild; /* drawing would cost too much; the lists are not filled */
 	struct warp_list doubtful;
 };
 
@@ -67,8 +68,15 @@ int warp_mesh_sort_doubtful(struct warp_mesh *mesh, uint32_t level, struct error
 /*
  * Fills the lists for a phase; without `tears` none is torn. `keep_order`: depths may be equal, so that what lies over
  * each other is drawn as one list. 0 or -ENOMEM with a sentence.
+ *
+ * Motion is the client's, and could make each triangle as large as the picture. Where the boxes around those that are
+ * stretched, each 8 pixels wider and higher than it is and cut at the picture, together have more pixels than
+ * warp_mesh_most_pixels(), `too_wild` is set and nothing else: no time or memory is spent on such a mesh.
  */
 int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_order, struct error *error);
+
+/* 16 Mi and 16 times the picture; the scenes of client/scenes need at most 1.5 times the picture. */
+uint64_t warp_mesh_most_pixels(uint32_t width, uint32_t height);
 
 void warp_mesh_draw(const struct warp_mesh *mesh, struct warp_list list);
 

@@ -102,7 +102,7 @@ static const struct {
 
 static void draw_wild(struct picture *picture, size_t i)
 {
-	picture_init(picture, 301 - 13 * (uint32_t)(i % 3), 205, PURSUIT_FORMAT_BGRA8,
+	picture_init(picture, 157 - 13 * (uint32_t)(i % 3), 101, PURSUIT_FORMAT_BGRA8,
 				 PICTURE_MOTION | PICTURE_UI | (wilds[i].depth ? PICTURE_DEPTH : 0u));
 	picture_fill_random(picture, PURSUIT_ROLE_COLOR, 3);
 	scatter(picture, 11 * (uint32_t)i, wilds[i].range, wilds[i].patch);
@@ -212,6 +212,58 @@ static void test_no_allocation_in_the_steady_state(void)
 	engine_destroy(&engine);
 }
 
+static bool says_too_wild(struct engine *engine)
+{
+	const struct engine_report *report = engine_get_report(engine);
+	for (uint32_t i = 0; i < report->left_out_count; i++)
+		if (strcmp(report->left_out[i].name, "warp") == 0 && strcmp(report->left_out[i].reason, "too-wild") == 0)
+			return true;
+	return false;
+}
+
+static void show(struct engine *engine, enum engine_show what, double phase, uint8_t *out, uint32_t width)
+{
+	struct error error;
+	const struct engine_request request = {what, phase};
+	struct engine_image image = {out, 4 * (size_t)width};
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+}
+
+/* Motion that would draw each triangle over all of the picture: shown plain, and no memory is taken for it. */
+static void test_hostile_motion(void)
+{
+	enum { WIDTH = 1280, HEIGHT = 720 };
+	struct engine *engine = make(NULL, 2);
+	const struct executor_cpu *executor = (const struct executor_cpu *)engine->executor;
+	const struct engine_begin_params begin = {.n = 4, .last_phase = -1.0};
+	const size_t bytes = (size_t)4 * WIDTH * HEIGHT;
+	uint8_t *plain = malloc(bytes), *shown = malloc(bytes);
+	struct picture picture;
+	struct error error;
+	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
+	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 3);
+	for (uint32_t seed = 1; seed <= 3; seed++) {
+		scatter(&picture, seed, 16000.0f, 8);
+		CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+		show(engine, ENGINE_SHOW_PLAIN, 0.0, plain, WIDTH);
+		CHECK(!says_too_wild(engine));
+		for (int step = 1; step <= 4; step++) {
+			memset(shown, 0, bytes);
+			show(engine, step % 2 ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, 0.25 * step, shown, WIDTH);
+			CHECK(memcmp(plain, shown, bytes) == 0);
+		}
+		CHECK(says_too_wild(engine));
+		/* So little of it that it is bearable is drawn. */
+		show(engine, ENGINE_SHOW_IN_BETWEEN, 0.0005, shown, WIDTH);
+		CHECK(memcmp(plain, shown, bytes) != 0);
+		CHECK(executor->scene.bins.triangle_bytes < warp_mesh_most_pixels(WIDTH, HEIGHT) / 8);
+	}
+	picture_finish(&picture);
+	free(plain);
+	free(shown);
+	engine_destroy(&engine);
+}
+
 static void test_refuses(void)
 {
 	struct error error = {""};
@@ -229,6 +281,7 @@ int main(void)
 	RUN(test_covered);
 	RUN(test_equal_bits);
 	RUN(test_no_allocation_in_the_steady_state);
+	RUN(test_hostile_motion);
 	RUN(test_refuses);
 	return test_result();
 }
