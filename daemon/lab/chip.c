@@ -56,13 +56,45 @@ int chip_count_lines(const char *chip, const char *list, const char *option, str
 	return count;
 }
 
+void chip_list_add(struct chip_list *list, const char *name, const char *label, uint32_t lines)
+{
+	const size_t used = strlen(list->text);
+	snprintf(list->text + used, sizeof(list->text) - used, "%s%s (%s, %u lines)", list->count++ ? ", " : "", name,
+			 label, lines);
+}
+
+/* ---- sentences ---- */
+
 int chip_explain_open(const char *chip, int code, struct error *error)
 {
+	const char *folder = strchr(chip, '/') ? "" : "/dev/";
 	if (code == EACCES || code == EPERM)
 		return error_set(
 			error, -code,
-			"gpio-chip: no permission to open %.64s; join the group that owns it (ls -l /dev/gpiochip*) or "
+			"gpio-chip: no permission to open %s%.64s; join the group that owns it (ls -l /dev/gpiochip*) or "
 			"install the udev rule of docs/lab.md",
-			chip);
-	return error_set(error, -code, "gpio-chip: %.64s: %s", chip, strerror(code));
+			folder, chip);
+	return error_set(error, -code, "gpio-chip: %s%.64s: %s", folder, chip, strerror(code));
+}
+
+int chip_explain_missing(const char *chip, const struct chip_list *list, struct error *error)
+{
+	const char *there = list->count ? "there are " : "there is none";
+	if (!*chip)
+		return error_set(error, -ENOENT, "gpio-chip: no chip has all lines that are named; %s%s", there, list->text);
+	return error_set(error, -ENOENT, "gpio-chip: there is no chip \"%.64s\"; %s%s", chip, there, list->text);
+}
+
+int chip_explain_line(const struct chip_params *params, const char *text, const char *line, uint32_t count,
+					  struct error *error)
+{
+	return error_set(error, -ENOENT, "%s: %s has no line %s; it has 0 to %u (gpioinfo shows their names)",
+					 params->option, text, line, count - 1);
+}
+
+int chip_explain_busy(const struct chip_params *params, const char *text, uint32_t offset, const char *user,
+					  struct error *error)
+{
+	return error_set(error, -EBUSY, "%s: line %u of %s is in use by %s", params->option, offset, text,
+					 user ? user : "the kernel");
 }

@@ -75,7 +75,22 @@ bool chip_is_offset(const char *name, uint32_t *offset);
  * or other may be the power supply.
  */
 int chip_count_lines(const char *chip, const char *list, const char *option, struct error *error);
-/* The sentence for an errno of open(2) on a chip. */
+/* The chips that there are, for a sentence: "gpiochip0 (lab-chip, 28 lines), ...". Zeroed: none. */
+struct chip_list {
+	char text[256];
+	uint32_t count;
+};
+void chip_list_add(struct chip_list *list, const char *name, const char *label, uint32_t lines);
+
+/* The sentence for an errno of open(2) on a chip; a name without a slash is one under /dev. */
 int chip_explain_open(const char *chip, int code, struct error *error);
+/* There is no such chip; or, if it is "", none that has all the lines that are named. */
+int chip_explain_missing(const char *chip, const struct chip_list *list, struct error *error);
+/* The chip (its text) has `count` lines, and this is none of them. */
+int chip_explain_line(const struct chip_params *params, const char *text, const char *line, uint32_t count,
+					  struct error *error);
+/* Somebody holds a line; user: who, NULL unknown. */
+int chip_explain_busy(const struct chip_params *params, const char *text, uint32_t offset, const char *user,
+					  struct error *error);
 
 #endif

@@ -31,22 +31,14 @@ const char *chip_library(void)
 
 /* ---- finding ---- */
 
-/* " there are gpiochip0 (gpio-sim.0, 28 lines), ..." */
-static void list_chips(char *text, size_t size)
+static void list_chips(struct chip_list *list)
 {
 	struct gpiod_chip_iter *iterator = gpiod_chip_iter_new();
 	struct gpiod_chip *chip;
-	size_t used = (size_t)snprintf(text, size, "there is none");
-	bool any = false;
 	if (!iterator)
 		return;
-	while ((chip = gpiod_chip_iter_next(iterator)) && used < size) {
-		if (!any)
-			used = (size_t)snprintf(text, size, "there are");
-		used += (size_t)snprintf(text + used, size - used, "%s %s (%s, %u lines)", any ? "," : "",
-								 gpiod_chip_name(chip), gpiod_chip_label(chip), gpiod_chip_num_lines(chip));
-		any = true;
-	}
+	while ((chip = gpiod_chip_iter_next(iterator)))
+		chip_list_add(list, gpiod_chip_name(chip), gpiod_chip_label(chip), gpiod_chip_num_lines(chip));
 	gpiod_chip_iter_free(iterator);
 }
 
@@ -80,17 +72,16 @@ static struct gpiod_chip *open_any(const char *lines)
 /* libgpiod's lookup hides a missing permission behind "no such device"; the path tells. */
 static int explain_chip(const char *name, int code, struct error *error)
 {
-	char path[64], list[320];
-	snprintf(path, sizeof(path), "%s%.40s", strchr(name, '/') || !*name ? "" : "/dev/",
-			 *name ? name : "/dev/gpiochip0");
+	const char *one = *name ? name : "gpiochip0";
+	struct chip_list list = {.count = 0};
+	char path[64];
+	snprintf(path, sizeof(path), "%s%.40s", strchr(one, '/') ? "" : "/dev/", one);
 	if (access(path, F_OK) == 0 && access(path, R_OK | W_OK) < 0 && errno == EACCES)
 		return chip_explain_open(path, EACCES, error);
 	if (code != 0 && code != ENOENT && code != ENODEV && code != ENOTTY && code != EINVAL)
-		return chip_explain_open(*name ? name : "/dev/gpiochip0", code, error);
-	list_chips(list, sizeof(list));
-	if (!*name)
-		return error_set(error, -ENOENT, "gpio-chip: no chip has all lines that are named; %s", list);
-	return error_set(error, -ENOENT, "gpio-chip: there is no chip \"%.64s\"; %s", name, list);
+		return chip_explain_open(one, code, error);
+	list_chips(&list);
+	return chip_explain_missing(name, &list, error);
 }
 
 static struct gpiod_line *find_line(struct gpiod_chip *chip, const char *name)
@@ -109,8 +100,7 @@ static int find_lines(struct chip *chip, const struct chip_params *params, struc
 	while (chip_next_line(&list, name) == 1) {
 		struct gpiod_line *line = find_line(chip->chip, name);
 		if (!line)
-			return error_set(error, -ENOENT, "%s: %s has no line %s; it has 0 to %u (gpioinfo shows their names)",
-							 params->option, chip->text, name, gpiod_chip_num_lines(chip->chip) - 1);
+			return chip_explain_line(params, chip->text, name, gpiod_chip_num_lines(chip->chip), error);
 		gpiod_line_bulk_add(&chip->lines, line);
 	}
 	return 0;
@@ -125,8 +115,7 @@ static int explain_request(struct chip *chip, const struct chip_params *params, 
 	{
 		const char *user = gpiod_line_update(line) == 0 ? gpiod_line_consumer(line) : NULL;
 		if (code == EBUSY && gpiod_line_is_used(line))
-			return error_set(error, -EBUSY, "%s: line %u of %s is in use by %s", params->option,
-							 gpiod_line_offset(line), chip->text, user ? user : "the kernel");
+			return chip_explain_busy(params, chip->text, gpiod_line_offset(line), user, error);
 	}
 	return error_set(error, -code, "%s: %s of %s: %s", params->option, params->lines, chip->text, strerror(code));
 }

@@ -13,7 +13,6 @@
 
 #define CONSUMER "pursuit"
 #define READ_MOST 16
-#define MOST_CHIPS 64
 
 struct chip {
 	struct gpiod_line_request *request;
@@ -31,28 +30,28 @@ const char *chip_library(void)
 
 /* ---- finding ---- */
 
-/* The chip at a path, by name or by label. Is it the one that is asked for? */
-static bool is_called(struct gpiod_chip *chip, const char *name, char *text, size_t size)
+/* What is known of a chip; false if it went away meanwhile. */
+static bool describe(struct gpiod_chip *device, char name[CHIP_NAME_BYTES], char label[CHIP_NAME_BYTES],
+					 uint32_t *lines)
 {
-	struct gpiod_chip_info *info = gpiod_chip_get_info(chip);
+	struct gpiod_chip_info *info = gpiod_chip_get_info(device);
 	if (!info)
 		return false;
-	const char *chip_name = gpiod_chip_info_get_name(info), *label = gpiod_chip_info_get_label(info);
-	const bool called = strcmp(chip_name, name) == 0 || strcmp(label, name) == 0;
-	snprintf(text, size, "%s (%s)", chip_name, label);
+	snprintf(name, CHIP_NAME_BYTES, "%s", gpiod_chip_info_get_name(info));
+	snprintf(label, CHIP_NAME_BYTES, "%s", gpiod_chip_info_get_label(info));
+	*lines = (uint32_t)gpiod_chip_info_get_num_lines(info);
 	gpiod_chip_info_free(info);
-	return called;
+	return true;
 }
 
-static int find_offset(struct gpiod_chip *chip, const char *name)
+/* -1: it has no such line. */
+static int find_offset(struct gpiod_chip *device, const char *line)
 {
-	uint32_t offset;
-	struct gpiod_chip_info *info = gpiod_chip_get_info(chip);
-	const size_t lines = info ? gpiod_chip_info_get_num_lines(info) : 0;
-	gpiod_chip_info_free(info);
-	if (!chip_is_offset(name, &offset))
-		return gpiod_chip_get_line_offset_from_name(chip, name);
-	return offset < lines ? (int)offset : -1;
+	char name[CHIP_NAME_BYTES], label[CHIP_NAME_BYTES];
+	uint32_t offset, lines;
+	if (!chip_is_offset(line, &offset))
+		return gpiod_chip_get_line_offset_from_name(device, line);
+	return describe(device, name, label, &lines) && offset < lines ? (int)offset : -1;
 }
 
 static bool has_lines(struct gpiod_chip *chip, const char *list)
@@ -70,70 +69,69 @@ static int is_chip(const struct dirent *entry)
 	return strncmp(entry->d_name, "gpiochip", 8) == 0;
 }
 
-/* The sentence about what there is; each chip is tried, so a missing permission shows. */
-static int explain_chip(const char *name, const char *seen, int code, struct error *error)
+/* Is it the one that is asked for? It goes on the list. */
+static bool fits(struct gpiod_chip *device, const struct chip_params *params, struct chip_list *list)
 {
-	if (code == EACCES || code == EPERM)
-		return chip_explain_open(*name ? name : "/dev/gpiochip*", code, error);
-	if (!*name)
-		return error_set(error, -ENOENT, "gpio-chip: no chip has all lines that are named; there is%s",
-						 *seen ? seen : " none");
-	return error_set(error, -ENOENT, "gpio-chip: there is no chip \"%.64s\"; there is%s", name, *seen ? seen : " none");
+	char name[CHIP_NAME_BYTES], label[CHIP_NAME_BYTES];
+	uint32_t lines;
+	if (!describe(device, name, label, &lines))
+		return false;
+	chip_list_add(list, name, label, lines);
+	if (!*params->chip)
+		return has_lines(device, params->lines);
+	return strcmp(name, params->chip) == 0 || strcmp(label, params->chip) == 0;
 }
 
-/* The first chip under /dev that fits. NULL with a sentence. */
-static struct gpiod_chip *search(const struct chip_params *params, char *text, size_t size, struct error *error)
+/* The first chip under /dev that fits. NULL with a sentence, about permission if that is why. */
+static struct gpiod_chip *search(const struct chip_params *params, struct error *error)
 {
 	struct dirent **entries = NULL;
 	struct gpiod_chip *found = NULL;
-	char seen[256] = "";
-	int code = ENOENT;
+	struct chip_list list = {.count = 0};
+	char path[300], closed[300] = "";
 	const int count = scandir("/dev", &entries, is_chip, versionsort);
 	for (int i = 0; i < count; i++) {
-		char path[300];
 		snprintf(path, sizeof(path), "/dev/%s", entries[i]->d_name);
-		struct gpiod_chip *chip = found || i >= MOST_CHIPS ? NULL : gpiod_chip_open(path);
-		if (chip) {
-			const bool called = is_called(chip, params->chip, text, size);
-			const size_t used = strlen(seen);
-			snprintf(seen + used, sizeof(seen) - used, "%s %s", used ? "," : "", text);
-			if (*params->chip ? called : has_lines(chip, params->lines))
-				found = chip;
-			else
-				gpiod_chip_close(chip);
-		} else if (!found && errno == EACCES) {
-			code = EACCES;
-		}
+		struct gpiod_chip *device = found ? NULL : gpiod_chip_open(path);
+		if (!device && !found && (errno == EACCES || errno == EPERM))
+			snprintf(closed, sizeof(closed), "%s", path);
+		if (device && fits(device, params, &list))
+			found = device;
+		else if (device)
+			gpiod_chip_close(device);
 		free(entries[i]);
 	}
 	free(entries);
-	if (!found)
-		explain_chip(params->chip, seen, code, error);
+	if (!found && *closed)
+		chip_explain_open(closed, EACCES, error);
+	else if (!found)
+		chip_explain_missing(params->chip, &list, error);
 	return found;
 }
 
-static struct gpiod_chip *open_chip(const struct chip_params *params, char *text, size_t size, struct error *error)
+static struct gpiod_chip *open_device(const struct chip_params *params, struct error *error)
 {
 	if (!strchr(params->chip, '/'))
-		return search(params, text, size, error);
-	struct gpiod_chip *chip = gpiod_chip_open(params->chip);
-	if (!chip)
+		return search(params, error);
+	struct gpiod_chip *device = gpiod_chip_open(params->chip);
+	if (!device)
 		chip_explain_open(params->chip, errno, error);
-	else
-		is_called(chip, "", text, size);
-	return chip;
+	return device;
 }
 
 static int find_lines(struct chip *chip, struct gpiod_chip *device, const struct chip_params *params,
 					  struct error *error)
 {
-	char name[CHIP_NAME_BYTES];
+	char line[CHIP_NAME_BYTES], name[CHIP_NAME_BYTES], label[CHIP_NAME_BYTES];
 	const char *list = params->lines;
-	while (chip_next_line(&list, name) == 1) {
-		const int offset = find_offset(device, name);
+	uint32_t lines;
+	if (!describe(device, name, label, &lines))
+		return chip_explain_open(params->chip, errno, error);
+	snprintf(chip->text, sizeof(chip->text), "%s (%s)", name, label);
+	while (chip_next_line(&list, line) == 1) {
+		const int offset = find_offset(device, line);
 		if (offset < 0)
-			return error_set(error, -ENOENT, "%s: %s has no line %s (gpioinfo shows what it has)", params->option,
-							 chip->text, name);
+			return chip_explain_line(params, chip->text, line, lines, error);
 		chip->offsets[chip->count++] = (unsigned)offset;
 	}
 	return 0;
@@ -147,10 +145,8 @@ static int explain_request(const struct chip *chip, struct gpiod_chip *device, c
 	for (uint32_t i = 0; i < chip->count && code == EBUSY; i++) {
 		struct gpiod_line_info *info = gpiod_chip_get_line_info(device, chip->offsets[i]);
 		const bool used = info && gpiod_line_info_is_used(info);
-		const char *user = used ? gpiod_line_info_get_consumer(info) : NULL;
 		if (used)
-			error_set(error, -EBUSY, "%s: line %u of %s is in use by %s", params->option, chip->offsets[i], chip->text,
-					  user ? user : "the kernel");
+			chip_explain_busy(params, chip->text, chip->offsets[i], gpiod_line_info_get_consumer(info), error);
 		gpiod_line_info_free(info);
 		if (used)
 			return -EBUSY;
@@ -210,7 +206,7 @@ struct chip *chip_open(const struct chip_params *params, struct error *error)
 		return NULL;
 	}
 	chip->input = params->input;
-	struct gpiod_chip *device = open_chip(params, chip->text, sizeof(chip->text), error);
+	struct gpiod_chip *device = open_device(params, error);
 	if (!device || find_lines(chip, device, params, error) < 0 || request(chip, device, params, error) < 0)
 		chip_close(&chip);
 	if (device)

@@ -250,7 +250,7 @@ def check_vanish():
 
 def check_errors():
     cases = [(["--gpio-line", "MARKER", "--gpio-chip", "gpiochip7"], "there is no chip \"gpiochip7\"; there are gpiochip0"),
-             (["--gpio-line", "NOBODY"], "no chip has all lines that are named"),
+             (["--gpio-line", "NOBODY"], "no chip has all lines that are named; there are gpiochip0 (lab-chip, 28 lines)"),
              (["--gpio-line", "28", "--gpio-chip", "lab-chip"], "has no line 28; it has 0 to 27"),
              (["--gpio-line", str(HOG), "--gpio-chip", "lab-chip"], "in use by someone-else"),
              (["--photodiode-line", str(HOG), "--gpio-chip", "lab-chip"], "in use by someone-else")]
