@@ -17,6 +17,7 @@
 #include "daemon/error.h"
 
 struct engine;
+struct pool;
 
 /* In the order of the report; pass.c has their names. */
 enum pass_id {
@@ -87,6 +88,7 @@ struct executor {
 	const struct executor_ops *ops;
 	struct engine_info info;
 	uint32_t max_size; /* of pictures, pixels a side */
+	struct pool *pool; /* threads for what is done on the CPU whoever the executor is; NULL: none */
 };
 
 /* The one that the params ask for, entered. NULL with a sentence. */

@@ -13,6 +13,7 @@ static int run(struct engine *engine, struct error *error)
 		.last_phase = (float)engine->last_phase,
 		.real_interval_ns = engine->real_interval_ns,
 		.unchanged = engine->damage.known && !engine->damage.count,
+		.pool = engine->executor->pool,
 	};
 	int result = plan_make(&engine->plan, engine->job.frame, &params, error);
 	if (result == 0 && engine->params.motion_model == ENGINE_MOTION_QUADRATIC)

@@ -26,6 +26,8 @@ enum plan_rest {
 	PLAN_UNCHANGED, /* its client says so; nobody looked */
 };
 
+struct pool;
+
 struct plan_params {
 	uint32_t cell;              /* 4 to 64 pixels, clamped; 0: 8 */
 	uint32_t threshold_quarter; /* q_min in quarter pixels, 1 to 63, clamped; 0: 2 */
@@ -34,6 +36,7 @@ struct plan_params {
 	float last_phase;           /* p_last, 0 to 8; clamped, NaN is 0 */
 	uint64_t real_interval_ns;  /* T as the pacer knows it; 0: the frame's own */
 	bool unchanged;             /* nothing has changed since the frame before */
+	struct pool *pool;          /* threads that share the work: no bit depends on them; NULL: the caller alone */
 };
 
 /* 24 bytes: what the GPU gets. */
@@ -46,6 +49,11 @@ struct plan_vertex {
 
 /* Pixels a side of the tiles that the plan tells about. */
 #define PLAN_TILE 64u
+
+static inline uint32_t plan_tiles_along(uint32_t size)
+{
+	return (size + PLAN_TILE - 1) / PLAN_TILE;
+}
 
 /* What a tile's triangles need; the first of INVALID, DISCONTINUOUS, STILL, UNIFORM that fits. */
 enum plan_tile_class {

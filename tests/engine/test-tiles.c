@@ -65,6 +65,42 @@ static void test_pool(void)
 	}
 }
 
+struct outer {
+	struct pool *pool;
+	struct counter inner;
+	atomic_uint items;
+};
+
+static void count_outer(void *context, uint32_t item, uint32_t thread)
+{
+	struct outer *outer = context;
+	atomic_fetch_add(&outer->items, 1);
+}
+
+/* Tasks that the caller runs while another one goes on. */
+static void test_pool_nests(void)
+{
+	for (uint32_t threads = 1; threads <= 4; threads++) {
+		struct outer outer = {.pool = pool_create(threads)};
+		long wrong = 0;
+		for (int round = 0; round < 200; round++) {
+			pool_start(outer.pool, count_outer, &outer, 100);
+			pool_run(outer.pool, count, &outer.inner, 50);
+			for (uint32_t i = 0; i < 50; i++)
+				wrong += outer.inner.items[i] != 2 * (uint32_t)round + 1;
+			pool_run(outer.pool, count, &outer.inner, 50);
+			pool_finish(outer.pool);
+			wrong += outer.items != 100 * ((uint32_t)round + 1);
+		}
+		CHECK_INT(wrong, 0);
+		pool_destroy(&outer.pool);
+	}
+	struct counter alone = {0};
+	pool_run(NULL, count, &alone, 10);
+	CHECK_INT(alone.threads[0], 10);
+	CHECK_INT(pool_threads(NULL), 1);
+}
+
 /* Random motion by patches, as far as `range` pixels; a depth for each pixel. */
 static void scatter(const struct picture *picture, uint32_t seed, float range, uint32_t patch)
 {
@@ -119,7 +155,7 @@ static void check_covered(struct engine *engine, double phase)
 	uint64_t uncovered = 0;
 	executor->scene.check = true;
 	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
-	for (uint32_t i = 0; i < pool_threads(executor->pool); i++)
+	for (uint32_t i = 0; i < pool_threads(executor->base.pool); i++)
 		uncovered += executor->scratch[i].uncovered;
 	CHECK_INT((long)uncovered, 0);
 }
@@ -278,6 +314,7 @@ static void test_refuses(void)
 int main(void)
 {
 	RUN(test_pool);
+	RUN(test_pool_nests);
 	RUN(test_covered);
 	RUN(test_equal_bits);
 	RUN(test_no_allocation_in_the_steady_state);

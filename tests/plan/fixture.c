@@ -228,3 +228,25 @@ void fixture_fill(struct fixture *fixture, enum fixture_field field, uint32_t se
 			}
 		}
 }
+
+static bool same_tiles(const struct plan *a, const struct plan *b)
+{
+	const size_t tiles = (size_t)plan_tiles_along(a->width) * plan_tiles_along(a->height);
+	if (!a->invalid_tiles || !b->invalid_tiles)
+		return a->invalid_tiles == b->invalid_tiles;
+	return memcmp(a->invalid_tiles, b->invalid_tiles, tiles) == 0;
+}
+
+bool fixture_same_plan(const struct plan *a, const struct plan *b)
+{
+	if (a->rest != b->rest || a->columns != b->columns || a->rows != b->rows || a->index_count != b->index_count)
+		return false;
+	if (a->snapped != b->snapped || a->folded != b->folded || a->doubtful != b->doubtful)
+		return false;
+	if (a->invalid_pixels != b->invalid_pixels || memcmp(&a->max_displacement, &b->max_displacement, 4) != 0)
+		return false;
+	size_t vertices = (size_t)a->columns * a->rows;
+	return a->rest != PLAN_MOVES ||
+		   (same_tiles(a, b) && memcmp(a->vertices, b->vertices, vertices * sizeof(*a->vertices)) == 0 &&
+			memcmp(a->indices, b->indices, a->index_count * sizeof(*a->indices)) == 0);
+}

@@ -82,4 +82,7 @@ struct oracle {
 void oracle_make(struct oracle *oracle, const struct fixture *fixture, const struct plan_params *params);
 void oracle_finish(struct oracle *oracle);
 
+/* Equal bits: all that plan_make() says of a frame. */
+bool fixture_same_plan(const struct plan *a, const struct plan *b);
+
 #endif

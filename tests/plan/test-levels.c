@@ -6,19 +6,6 @@
 #include "fixture.h"
 #include "tests/test.h"
 
-static int same_plan(const struct plan *a, const struct plan *b)
-{
-	if (a->rest != b->rest || a->columns != b->columns || a->rows != b->rows || a->index_count != b->index_count)
-		return 0;
-	if (a->snapped != b->snapped || a->folded != b->folded || a->doubtful != b->doubtful)
-		return 0;
-	if (a->invalid_pixels != b->invalid_pixels || memcmp(&a->max_displacement, &b->max_displacement, 4) != 0)
-		return 0;
-	size_t vertices = (size_t)a->columns * a->rows;
-	return a->rest != PLAN_MOVES || (memcmp(a->vertices, b->vertices, vertices * sizeof(*a->vertices)) == 0 &&
-									 memcmp(a->indices, b->indices, a->index_count * sizeof(*a->indices)) == 0);
-}
-
 static void check_levels(const struct fixture *fixture, const struct plan_params *params, const char *what)
 {
 	static struct plan plain, other;
@@ -29,7 +16,7 @@ static void check_levels(const struct fixture *fixture, const struct plan_params
 		if (!kernels)
 			continue;
 		CHECK_INT(plan_make_with(&other, &fixture->frame, params, kernels, &error), 0);
-		int same = same_plan(&plain, &other);
+		int same = fixture_same_plan(&plain, &other);
 		CHECK(same);
 		if (!same)
 			fprintf(stderr, "%s: %s is not plain\n", what, kernels->name);

@@ -60,7 +60,7 @@ static void test_no_allocation_in_the_steady_state(void)
 	plan_finish(NULL);
 }
 
-static void test_still_frames_need_no_grid(void)
+static void test_still_frames_have_no_grid(void)
 {
 	struct plan_params params = {0};
 	struct plan plan = {0};
@@ -68,7 +68,7 @@ static void test_still_frames_need_no_grid(void)
 	struct error error;
 	fixture_make(&fixture, &big);
 	CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), 0);
-	CHECK(plan.rest == PLAN_STILL && !plan.vertices && !plan.indices);
+	CHECK(plan.rest == PLAN_STILL && !plan.columns && !plan.rows && !plan.index_count);
 	plan_finish(&plan);
 	fixture_finish(&fixture);
 }
@@ -217,7 +217,7 @@ static void test_nothing_is_read_beyond_the_planes(void)
 int main(void)
 {
 	RUN(test_no_allocation_in_the_steady_state);
-	RUN(test_still_frames_need_no_grid);
+	RUN(test_still_frames_have_no_grid);
 	RUN(test_no_memory_is_said);
 	RUN(test_planes_that_change_under_the_reader);
 	RUN(test_nothing_is_read_beyond_the_planes);

@@ -25,20 +25,15 @@ struct plan_scale plan_scale_make(double real_s, double motion_s, uint32_t width
 	return scale;
 }
 
-static uint32_t tiles_along(uint32_t size)
-{
-	return (size + PLAN_TILE - 1) / PLAN_TILE;
-}
-
 /* Some pixels of row y are invalid: which tiles are they in? */
-static void mark_invalid(struct plan_motion *motion, uint32_t y, const float *motions, bool first)
+static void mark_invalid(const struct plan_motion *motion, uint32_t y, const float *motions)
 {
-	uint32_t columns = tiles_along(motion->width);
-	if (first)
-		memset(motion->invalid_tiles, 0, (size_t)columns * tiles_along(motion->height));
-	uint8_t *tiles = motion->invalid_tiles + (size_t)(y / PLAN_TILE) * columns;
+	if (!motion->invalid_tiles)
+		return;
+	uint8_t *tiles = motion->invalid_tiles + (size_t)(y / PLAN_TILE) * plan_tiles_along(motion->width);
 	for (uint32_t i = 0; i < motion->width; i++)
-		tiles[i / PLAN_TILE] |= !isfinite(motions[2 * (size_t)i]) || !isfinite(motions[2 * (size_t)i + 1]);
+		if (!isfinite(motions[2 * (size_t)i]) || !isfinite(motions[2 * (size_t)i + 1]))
+			__atomic_store_n(&tiles[i / PLAN_TILE], 1, __ATOMIC_RELAXED);
 }
 
 void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uint32_t cell, struct plan_arena *arena)
@@ -48,12 +43,18 @@ void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uin
 	motion->width = motion->rows.colour_width;
 	motion->height = motion->rows.colour_height;
 	motion->invalid = 0;
+	motion->invalid_tiles = NULL;
 	motion->ring = cell + 1;
 	motion->stride = (motion->width + 16) / 16 * 16;
 	motion->ux = plan_arena_take(arena, motion->ring * motion->stride * sizeof(float));
 	motion->uy = plan_arena_take(arena, motion->ring * motion->stride * sizeof(float));
-	motion->invalid_tiles = plan_arena_take(arena, (size_t)tiles_along(motion->width) * tiles_along(motion->height));
 	motion->decoded = plan_arena_take(arena, 2 * (size_t)motion->width * sizeof(float));
+	plan_motion_begin(motion, motion->height);
+}
+
+void plan_motion_begin(struct plan_motion *motion, uint32_t counted_end)
+{
+	motion->counted_end = counted_end;
 	memset(motion->slots, SLOT_UNKNOWN, sizeof(motion->slots));
 }
 
@@ -105,10 +106,12 @@ void plan_motion_load(struct plan_motion *motion, uint32_t y)
 	float *ux = motion->ux + slot * motion->stride, *uy = motion->uy + slot * motion->stride;
 	uint32_t seen = kernels->scale_row(motions, width, &motion->scale, ux, uy);
 	if (seen & PLAN_ROW_ODD) {
-		uint64_t before = motion->invalid;
-		seen = kernels->careful_row(motions, width, &motion->scale, ux, uy, &motion->invalid);
-		if (motion->invalid > before)
-			mark_invalid(motion, y, motions, before == 0);
+		uint64_t invalid = 0;
+		seen = kernels->careful_row(motions, width, &motion->scale, ux, uy, &invalid);
+		if (invalid && y < motion->counted_end) {
+			motion->invalid += invalid;
+			mark_invalid(motion, y, motions);
+		}
 	}
 	ux[width] = ux[width - 1];
 	uy[width] = uy[width - 1];

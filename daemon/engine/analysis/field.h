@@ -19,15 +19,19 @@ struct plan_motion {
 	uint32_t ring;
 	float *decoded;                   /* a row of motion as floats, when half */
 	uint8_t slots[PLAN_MAX_CELL + 1]; /* what each slot holds, enum plan_slot */
+	uint32_t counted_end;             /* invalid pixels are counted in the rows before this one */
 	uint64_t invalid;
-	uint8_t *invalid_tiles; /* by tile of PLAN_TILE; made when the first invalid pixel is met */
+	uint8_t *invalid_tiles; /* by tile of PLAN_TILE, several threads may mark them; caller's; NULL: not wanted */
 };
 
 /* T / S and the tracking limit. Times in seconds, both known. */
 struct plan_scale plan_scale_make(double real_s, double motion_s, uint32_t width, const struct plan_params *params);
 
-/* Ring buffers for cells of that size; `rows` is that of the motion plane. */
+/* Ring buffers for cells of that size. */
 void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uint32_t cell, struct plan_arena *arena);
+
+/* Forgets those in the ring: rows may begin anywhere. */
+void plan_motion_begin(struct plan_motion *motion, uint32_t counted_end);
 
 /* Puts row y, at most height, into its slot; row `height` repeats the last one. Each row once, in order. */
 void plan_motion_load(struct plan_motion *motion, uint32_t y);

@@ -71,7 +71,7 @@ void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t 
 	grid->diagonals = plan_arena_take(arena, columns * sizeof(uint32_t));
 	take_vertex_row(&grid->ring[0], columns, arena);
 	take_vertex_row(&grid->ring[1], columns, arena);
-	grid->row = 0;
+	grid->counts = (struct plan_grid_counts){0};
 	if (arena->base)
 		fill_columns(grid, cell);
 }
@@ -90,16 +90,22 @@ static int reserve(void **data, uint32_t *capacity, size_t count, size_t size)
 	return 0;
 }
 
-static int reserve_grid(struct plan *plan, size_t columns, size_t rows)
+int plan_grid_reserve(struct plan *plan)
 {
+	const uint32_t cell = plan->cell, columns = (plan->width + cell - 1) / cell + 2;
+	const uint32_t rows = (plan->height + cell - 1) / cell + 2;
 	void *vertices = plan->vertices, *indices = plan->indices;
-	int failed = reserve(&vertices, &plan->vertex_capacity, columns * rows, sizeof(*plan->vertices));
+	int failed = reserve(&vertices, &plan->vertex_capacity, (size_t)columns * rows, sizeof(*plan->vertices));
 	plan->vertices = vertices;
 	if (failed)
 		return failed;
-	failed = reserve(&indices, &plan->index_capacity, (columns - 1) * (rows - 1) * 6, sizeof(*plan->indices));
+	failed = reserve(&indices, &plan->index_capacity, (size_t)(columns - 1) * (rows - 1) * 6, sizeof(*plan->indices));
 	plan->indices = indices;
-	return failed;
+	if (failed)
+		return failed;
+	plan->columns = columns;
+	plan->rows = rows;
+	return 0;
 }
 
 static uint32_t *put_quad(uint32_t *index, uint32_t v00, uint32_t columns, uint32_t main)
@@ -120,16 +126,15 @@ static void put_quads(struct plan_grid *grid)
 	struct plan *plan = grid->plan;
 	const struct plan_vertex_row *upper = &grid->ring[(grid->row + 1) % 2], *lower = &grid->ring[grid->row % 2];
 	uint32_t columns = plan->columns, start = (grid->row - 1) * columns;
-	uint32_t *index = plan->indices + plan->index_count;
-	plan->index_count += 6 * (columns - 1);
+	uint32_t *index = plan->indices + 6 * (size_t)(columns - 1) * (grid->row - 1);
 	if (upper->still && lower->still) {
 		for (uint32_t i = 0; i + 1 < columns; i++)
 			index = put_quad(index, start + i, columns, 1);
 		return;
 	}
 	struct plan_quad_counts counts = grid->kernels->quads(upper, lower, columns - 1, plan->last_phase, grid->diagonals);
-	plan->folded += counts.folded;
-	plan->doubtful += counts.doubtful;
+	grid->counts.folded += counts.folded;
+	grid->counts.doubtful += counts.doubtful;
 	for (uint32_t i = 0; i + 1 < columns; i++)
 		index = put_quad(index, start + i, columns, grid->diagonals[i]);
 }
@@ -143,11 +148,36 @@ static void put_row(struct plan_grid *grid)
 		vertex[i] = (struct plan_vertex){row->x[i], row->y[i], row->ux[i], row->uy[i], row->z[i], row->snapped[i]};
 	if (!row->still) {
 		float largest = sqrtf(grid->kernels->largest_square(row->ux, row->uy, plan->columns));
-		plan->max_displacement = largest > plan->max_displacement ? largest : plan->max_displacement;
+		struct plan_grid_counts *counts = &grid->counts;
+		counts->max_displacement = largest > counts->max_displacement ? largest : counts->max_displacement;
 	}
-	if (grid->row > 0)
+	if (grid->follows)
 		put_quads(grid);
+	grid->follows = true;
 	grid->row++;
+}
+
+/* A row of vertices that is in the plan already, into the ring. */
+static void take_row(struct plan_grid *grid, uint32_t index)
+{
+	const struct plan *plan = grid->plan;
+	const struct plan_vertex *vertex = plan->vertices + (size_t)index * plan->columns;
+	struct plan_vertex_row *row = &grid->ring[index % 2];
+	row->still = false;
+	for (uint32_t i = 0; i < plan->columns; i++) {
+		row->x[i] = vertex[i].x;
+		row->y[i] = vertex[i].y;
+		row->ux[i] = vertex[i].ux;
+		row->uy[i] = vertex[i].uy;
+	}
+}
+
+void plan_grid_join(struct plan_grid *grid, uint32_t r)
+{
+	grid->row = r + 1;
+	take_row(grid, r);
+	take_row(grid, r + 1);
+	put_quads(grid);
 }
 
 /* Regular positions at height y, z from grid->z, nothing moves. The border's z from row `edge`. */
@@ -186,16 +216,12 @@ static void put_border(struct plan_grid *grid, uint32_t pixel_row, float y)
 	put_row(grid);
 }
 
-int plan_grid_begin(struct plan_grid *grid)
+void plan_grid_begin(struct plan_grid *grid, uint32_t r)
 {
-	uint32_t columns = grid->cells_x + 2, rows = grid->cells_y + 2;
-	int failed = reserve_grid(grid->plan, columns, rows);
-	if (failed)
-		return failed;
-	grid->plan->columns = columns;
-	grid->plan->rows = rows;
-	put_border(grid, 0, 0);
-	return 0;
+	grid->row = r ? r + 1 : 0;
+	grid->follows = false;
+	if (r == 0)
+		put_border(grid, 0, 0);
 }
 
 /* z of pixel rows j0 and j1: the smaller into grid->z, j1 alone into grid->z_second. */
@@ -299,7 +325,7 @@ static void snap_cells(struct plan_grid *grid, const struct band *band)
 	}
 	for (uint32_t i = 0; i < count; i++)
 		snap(grid, band, grid->snaps[i], grid->snaps[i] * cell + grid->found[i] % 64, grid->found[i] / 64);
-	grid->plan->snapped += count;
+	grid->counts.snapped += count;
 }
 
 /* u of vertices that do not snap. */
@@ -341,7 +367,8 @@ void plan_grid_moving_row(struct plan_grid *grid, uint32_t r)
 	put_row(grid);
 }
 
-void plan_grid_end(struct plan_grid *grid)
+void plan_grid_end(struct plan_grid *grid, uint32_t r)
 {
-	put_border(grid, grid->plan->height - 1, (float)grid->plan->height);
+	if (r == grid->cells_y)
+		put_border(grid, grid->plan->height - 1, (float)grid->plan->height);
 }

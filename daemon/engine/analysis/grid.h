@@ -1,15 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* The grid of vertices and its triangles (docs/method.md, 2), row by row from the top. */
+/*
+ * The grid of vertices and its triangles (docs/method.md, 2), row by row from the top, by bands of rows: threads work
+ * on different bands, each with a struct plan_grid of its own for the same plan.
+ */
 #ifndef PURSUIT_ANALYSIS_GRID_H
 #define PURSUIT_ANALYSIS_GRID_H
 
 #include "daemon/engine/analysis/field.h"
 
+/* What a band adds to the plan. */
+struct plan_grid_counts {
+	uint32_t snapped, folded, doubtful;
+	float max_displacement;
+};
+
 struct plan_grid {
 	const struct plan_kernels *kernels;
-	struct plan *plan;
+	struct plan *plan; /* sizes are read, vertices and indices of the band's rows are written */
 	const struct plan_motion *motion;
 	uint32_t cells_x, cells_y;
 	float least;              /* g² of q_min */
@@ -26,20 +35,29 @@ struct plan_grid {
 	/* vertices: the row before and the one in work */
 	struct plan_vertex_row ring[2];
 	uint32_t *diagonals;
-	uint32_t row; /* in work */
+	uint32_t row; /* in work, 0: the upper border */
+	bool follows; /* the other row of the ring is the one above it */
+	struct plan_grid_counts counts;
 };
 
 void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t cell, uint32_t threshold,
 					struct plan_arena *arena);
 
-/* The row of vertices on the picture's upper border; makes room in the plan. 0 or -ENOMEM. */
-int plan_grid_begin(struct plan_grid *grid);
+/* Makes room for the vertices and triangles of a plan whose width, height and cell are set, sets columns and rows. 0 or
+ * -ENOMEM. */
+int plan_grid_reserve(struct plan *plan);
+
+/* A band begins with cell row r; the first one with the vertices on the picture's upper border. */
+void plan_grid_begin(struct plan_grid *grid, uint32_t r);
 
 /* Vertices of cell row r, where nothing moves; or where u of its rows and the one below is in the ring. */
 void plan_grid_still_row(struct plan_grid *grid, uint32_t r);
 void plan_grid_moving_row(struct plan_grid *grid, uint32_t r);
 
-/* The lower border. */
-void plan_grid_end(struct plan_grid *grid);
+/* The band ends before cell row r; the last one with the lower border. */
+void plan_grid_end(struct plan_grid *grid, uint32_t r);
+
+/* The triangles above the first vertices of a band that begins with cell row r > 0, when both bands are done. */
+void plan_grid_join(struct plan_grid *grid, uint32_t r);
 
 #endif

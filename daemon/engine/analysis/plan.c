@@ -7,8 +7,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "daemon/engine/analysis/bands.h"
 #include "daemon/engine/analysis/facts.h"
-#include "daemon/engine/analysis/grid.h"
 
 static void reset(struct plan *plan, const struct frame *frame, const struct plan_params *params)
 {
@@ -28,20 +28,11 @@ static void reset(struct plan *plan, const struct frame *frame, const struct pla
 	plan->max_displacement = 0;
 }
 
-static void lay_out(struct plan_motion *motion, struct plan_grid *grid, const struct frame *frame, uint32_t threshold,
-					struct plan_arena *arena)
-{
-	uint32_t cell = grid->plan->cell;
-	plan_motion_init(motion, frame, cell, arena);
-	plan_grid_init(grid, frame, cell, threshold, arena);
-}
-
 /* Cuts the scratch into buffers, after growing it if it is too small. */
-static int prepare(struct plan *plan, struct plan_motion *motion, struct plan_grid *grid, const struct frame *frame,
-				   uint32_t threshold)
+static int prepare(struct plan *plan, struct plan_bands *bands, const struct frame *frame)
 {
 	struct plan_arena arena = {NULL, 0};
-	lay_out(motion, grid, frame, threshold, &arena);
+	plan_bands_init(bands, frame, &arena);
 	if (arena.used > plan->scratch_bytes) {
 		free(plan->scratch);
 		plan->scratch_bytes = 0;
@@ -51,41 +42,8 @@ static int prepare(struct plan *plan, struct plan_motion *motion, struct plan_gr
 		plan->scratch_bytes = arena.used;
 	}
 	arena = (struct plan_arena){plan->scratch, 0};
-	lay_out(motion, grid, frame, threshold, &arena);
-	return 0;
-}
-
-/* Cell rows from the top; the grid begins with the first that moves. */
-static int analyse(struct plan_motion *motion, struct plan_grid *grid)
-{
-	uint32_t cell = grid->plan->cell, height = grid->plan->height;
-	bool begun = false;
-	plan_motion_load(motion, 0);
-	for (uint32_t r = 0; r < grid->cells_y; r++) {
-		uint32_t start = r * cell, end = height - start < cell ? height : start + cell;
-		bool moves = plan_motion_moves(motion, start);
-		for (uint32_t y = start + 1; y <= end; y++) {
-			plan_motion_load(motion, y);
-			moves |= plan_motion_moves(motion, y);
-		}
-		if (moves && !begun) {
-			int failed = plan_grid_begin(grid);
-			if (failed)
-				return failed;
-			begun = true;
-			for (uint32_t still = 0; still < r; still++)
-				plan_grid_still_row(grid, still);
-		}
-		if (moves)
-			plan_grid_moving_row(grid, r);
-		else if (begun)
-			plan_grid_still_row(grid, r);
-	}
-	if (begun)
-		plan_grid_end(grid);
-	else
-		grid->plan->rest = PLAN_STILL;
-	return 0;
+	plan_bands_init(bands, frame, &arena);
+	return plan_grid_reserve(plan);
 }
 
 static int out_of_memory(struct plan *plan, struct error *error)
@@ -105,15 +63,12 @@ int plan_make_with(struct plan *plan, const struct frame *frame, const struct pl
 	if (plan->rest != PLAN_MOVES)
 		return 0;
 	uint32_t threshold = params->threshold_quarter ? params->threshold_quarter : 2;
-	struct plan_motion motion = {.kernels = kernels};
-	struct plan_grid grid = {.kernels = kernels, .plan = plan, .motion = &motion};
-	motion.scale = plan_scale_make(plan->real_interval_s, (double)intervals.motion * 1e-9, plan->width, params);
-	if (prepare(plan, &motion, &grid, frame, threshold < 63 ? threshold : 63))
+	struct plan_bands bands = {
+		.plan = plan, .pool = params->pool, .kernels = kernels, .threshold = threshold < 63 ? threshold : 63};
+	bands.scale = plan_scale_make(plan->real_interval_s, (double)intervals.motion * 1e-9, plan->width, params);
+	if (prepare(plan, &bands, frame))
 		return out_of_memory(plan, error);
-	if (analyse(&motion, &grid))
-		return out_of_memory(plan, error);
-	plan->invalid_pixels = motion.invalid;
-	plan->invalid_tiles = motion.invalid ? motion.invalid_tiles : NULL;
+	plan_bands_run(&bands);
 	return 0;
 }
 

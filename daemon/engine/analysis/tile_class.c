@@ -17,14 +17,9 @@ static struct range vertices_of(uint32_t tile, uint32_t size, uint32_t cell, uin
 	return (struct range){from / cell, last < count ? last : count - 1};
 }
 
-static uint32_t tiles_along(uint32_t size)
-{
-	return (size + PLAN_TILE - 1) / PLAN_TILE;
-}
-
 enum plan_tile_class plan_tile_class(const struct plan *plan, uint32_t column, uint32_t row, float tolerance)
 {
-	if (plan->invalid_tiles && plan->invalid_tiles[row * tiles_along(plan->width) + column])
+	if (plan->invalid_tiles && plan->invalid_tiles[row * plan_tiles_along(plan->width) + column])
 		return PLAN_TILE_INVALID;
 	if (!plan->columns)
 		return PLAN_TILE_STILL;
@@ -48,7 +43,7 @@ void plan_count_tiles(const struct plan *plan, float tolerance, uint32_t counts[
 {
 	for (int i = 0; i < PLAN_TILE_CLASSES; i++)
 		counts[i] = 0;
-	for (uint32_t row = 0; row < tiles_along(plan->height); row++)
-		for (uint32_t column = 0; column < tiles_along(plan->width); column++)
+	for (uint32_t row = 0; row < plan_tiles_along(plan->height); row++)
+		for (uint32_t column = 0; column < plan_tiles_along(plan->width); column++)
 			counts[plan_tile_class(plan, column, row, tolerance)]++;
 }

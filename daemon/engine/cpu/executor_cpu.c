@@ -27,7 +27,7 @@ static int enter(struct executor *executor, struct error *error)
 static void destroy(struct executor **executor)
 {
 	struct executor_cpu *gone = self(*executor);
-	pool_destroy(&gone->pool);
+	pool_destroy(&gone->base.pool);
 	for (int i = 0; i < PICTURE_COUNT; i++)
 		canvas_finish(&gone->pictures[i]);
 	for (int i = 0; i < MAX_LEVELS; i++)
@@ -44,7 +44,7 @@ static void destroy(struct executor **executor)
 static void keep_original(struct executor *executor)
 {
 	struct executor_cpu *cpu = self(executor);
-	layers_show(&cpu->layers, PICTURE_ORIGINAL, &cpu->pictures[PICTURE_ORIGINAL], cpu->pool);
+	layers_show(&cpu->layers, PICTURE_ORIGINAL, &cpu->pictures[PICTURE_ORIGINAL], cpu->base.pool);
 	layers_clear(&cpu->layers);
 	struct canvas kept = cpu->pictures[PICTURE_ORIGINAL];
 	cpu->pictures[PICTURE_ORIGINAL] = cpu->pictures[PICTURE_PREVIOUS];
@@ -126,8 +126,8 @@ static bool start(struct executor_cpu *executor, const struct engine_params *par
 	executor->kernels = choose_kernels(params->level, error);
 	if (!executor->kernels)
 		return false;
-	executor->pool = pool_create(params->threads);
-	size_t scratch = executor->pool ? pool_threads(executor->pool) * sizeof(*executor->scratch) : 0;
+	executor->base.pool = pool_create(params->threads);
+	size_t scratch = executor->base.pool ? pool_threads(executor->base.pool) * sizeof(*executor->scratch) : 0;
 	executor->scratch = scratch ? aligned_alloc(64, (scratch + 63) / 64 * 64) : NULL;
 	if (!executor->scratch) {
 		error_set(error, -ENOMEM, "out of memory");
@@ -135,7 +135,7 @@ static bool start(struct executor_cpu *executor, const struct engine_params *par
 	}
 	memset(executor->scratch, 0, scratch);
 	snprintf(executor->renderer, sizeof(executor->renderer), "cpu (%s, %u threads)", executor->kernels->name,
-			 pool_threads(executor->pool));
+			 pool_threads(executor->base.pool));
 	executor->base.info =
 		(struct engine_info){.context = "cpu", .renderer = executor->renderer, .version = "", .software = true};
 	return true;
@@ -162,7 +162,7 @@ const struct canvas *cpu_picture(struct engine *engine, enum picture_id id)
 	cpu_finish_intake(engine);
 	if (id != PICTURE_ORIGINAL && id != PICTURE_REAL && id != PICTURE_BETWEEN)
 		return &executor->pictures[id];
-	layers_show(&executor->layers, id, &executor->pictures[PICTURE_ORIGINAL], executor->pool);
+	layers_show(&executor->layers, id, &executor->pictures[PICTURE_ORIGINAL], executor->base.pool);
 	return &executor->pictures[PICTURE_ORIGINAL];
 }
 
@@ -195,5 +195,5 @@ static void copy_rows(void *context, uint32_t item, uint32_t thread)
 void cpu_copy(struct executor_cpu *executor, const struct canvas *from, const struct rows *to)
 {
 	struct copy copy = {from, to};
-	pool_run(executor->pool, copy_rows, &copy, (from->height + COPY_ROWS - 1) / COPY_ROWS);
+	pool_run(executor->base.pool, copy_rows, &copy, (from->height + COPY_ROWS - 1) / COPY_ROWS);
 }

@@ -10,8 +10,8 @@
 #include "daemon/engine/cpu/layers.h"
 #include "daemon/engine/cpu/levels.h"
 #include "daemon/engine/cpu/light.h"
-#include "daemon/engine/cpu/pool.h"
 #include "daemon/engine/cpu/weights.h"
+#include "daemon/engine/pool.h"
 #include "daemon/engine/state.h"
 
 /* Rows of a picture, wherever they lie. */
@@ -32,7 +32,6 @@ struct intake {
 
 struct executor_cpu {
 	struct executor base;
-	struct pool *pool;
 	const struct cpu_kernels *kernels;
 	char renderer[64];
 	struct engine_pass_report *timed;

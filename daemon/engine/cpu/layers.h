@@ -9,8 +9,8 @@
 #define PURSUIT_ENGINE_CPU_LAYERS_H
 
 #include "daemon/engine/cpu/canvas.h"
-#include "daemon/engine/cpu/pool.h"
 #include "daemon/engine/executor.h"
+#include "daemon/engine/pool.h"
 #include "daemon/engine/tiles.h"
 
 /* Pixels a side. */

@@ -105,10 +105,10 @@ static int run(struct engine *engine, struct error *error)
 	uint32_t items = (executor->layers.count + BLOCKS_OF_ITEM - 1) / BLOCKS_OF_ITEM;
 	if (engine->params.blur != ENGINE_BLUR_EVERYWHERE) {
 		uint32_t triangles = engine->mesh.doubtful.count / 3;
-		pool_run(executor->pool, clear_blocks, executor, items);
-		pool_run(executor->pool, put_triangles, engine, (triangles + TRIANGLES_OF_ITEM - 1) / TRIANGLES_OF_ITEM);
+		pool_run(executor->base.pool, clear_blocks, executor, items);
+		pool_run(executor->base.pool, put_triangles, engine, (triangles + TRIANGLES_OF_ITEM - 1) / TRIANGLES_OF_ITEM);
 	}
-	pool_run(executor->pool, make_blocks, engine, items);
+	pool_run(executor->base.pool, make_blocks, engine, items);
 	return 0;
 }
 

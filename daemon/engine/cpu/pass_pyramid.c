@@ -88,7 +88,7 @@ static int make_levels(struct engine *engine, struct error *error)
 			return result;
 		struct work work = {
 			.executor = executor, .tiles = &engine->mesh.levels, .from = below, .to = level, .shift = i + 1};
-		pool_run(executor->pool, halve_tiles, &work, engine->mesh.levels.rows);
+		pool_run(executor->base.pool, halve_tiles, &work, engine->mesh.levels.rows);
 		below = level;
 	}
 	return 0;
@@ -109,7 +109,7 @@ static int make_low(struct engine *engine, struct error *error)
 		return result;
 	for (uint32_t i = 0; i < 1u << shift; i++)
 		spline_weights((float)i / (float)(1u << shift), work.weights[i]);
-	pool_run(executor->pool, smooth_tiles, &work, engine->mesh.low.rows);
+	pool_run(executor->base.pool, smooth_tiles, &work, engine->mesh.low.rows);
 	return 0;
 }
 

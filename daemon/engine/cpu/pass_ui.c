@@ -38,7 +38,7 @@ static int run(struct engine *engine, struct error *error)
 	if (engine->job.picture != PICTURE_SHOWN)
 		cpu_copy(work.executor, cpu_picture(engine, engine->job.picture), &work.shown);
 	uint32_t rows = work.bounds->bottom - work.bounds->top;
-	pool_run(work.executor->pool, blend, &work, (rows + ROWS_OF_ITEM - 1) / ROWS_OF_ITEM);
+	pool_run(work.executor->base.pool, blend, &work, (rows + ROWS_OF_ITEM - 1) / ROWS_OF_ITEM);
 	engine->job.picture = PICTURE_SHOWN;
 	return 0;
 }

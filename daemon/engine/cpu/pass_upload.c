@@ -79,7 +79,7 @@ static int run(struct engine *engine, struct error *error)
 	intake->engine = engine;
 	intake->color_items = items;
 	intake->under_way = true;
-	pool_start(executor->pool, take, intake, intake->ui >= 0 ? 2 * items : items);
+	pool_start(executor->base.pool, take, intake, intake->ui >= 0 ? 2 * items : items);
 	engine->report.bytes_up += 4 * (uint64_t)engine->width * engine->height * (intake->ui >= 0 ? 2 : 1);
 	return 0;
 }
@@ -101,7 +101,7 @@ void cpu_finish_intake(struct engine *engine)
 	if (!executor->intake.under_way)
 		return;
 	executor->intake.under_way = false;
-	pool_finish(executor->pool);
+	pool_finish(executor->base.pool);
 	for (uint32_t i = 0; i < executor->intake.color_items && executor->intake.ui >= 0; i++)
 		unite(&engine->ui_bounds, &executor->intake.bounds[i]);
 }

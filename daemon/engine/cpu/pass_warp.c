@@ -29,7 +29,7 @@ static int run(struct engine *engine, struct error *error)
 	scene->low = cpu_picture(engine, PICTURE_LOW);
 	scene->out = shown.data;
 	scene->stride = shown.stride;
-	pool_run(executor->pool, draw, executor, scene_tiles(scene));
+	pool_run(executor->base.pool, draw, executor, scene_tiles(scene));
 	return 0;
 }
 

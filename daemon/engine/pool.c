@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/engine/cpu/pool.h"
+#include "daemon/engine/pool.h"
 
 #include <assert.h>
 #include <pthread.h>
@@ -17,19 +17,22 @@ struct worker {
 	pthread_t thread;
 };
 
+struct task {
+	pool_function function;
+	void *context;
+	uint32_t count;
+	atomic_uint next;
+	uint32_t busy; /* workers that have joined */
+};
+
 struct pool {
 	pthread_mutex_t lock;
 	pthread_cond_t wake, done;
 	struct worker workers[POOL_MAX_THREADS - 1];
 	uint32_t worker_count;
-	/* The task; under the lock but for `next`. */
-	pool_function function;
-	void *context;
-	uint32_t count;
-	atomic_uint next;
-	uint64_t task; /* counts tasks */
-	bool open;     /* workers may still join */
-	uint32_t busy; /* workers that have joined */
+	/* Under the lock but for `next`. */
+	struct task tasks[POOL_MAX_TASKS];
+	uint32_t depth; /* tasks that workers may join; only the caller changes it */
 	bool stop;
 };
 
@@ -43,36 +46,41 @@ static uint32_t count_cpus(void)
 	return count < 1 ? 1 : count > (int)POOL_MAX_THREADS ? POOL_MAX_THREADS : (uint32_t)count;
 }
 
-static void take_items(struct pool *pool, pool_function function, void *context, uint32_t count, uint32_t thread)
+static void take_items(struct task *task, uint32_t thread)
 {
 	for (;;) {
-		uint32_t item = atomic_fetch_add_explicit(&pool->next, 1, memory_order_relaxed);
-		if (item >= count)
+		uint32_t item = atomic_fetch_add_explicit(&task->next, 1, memory_order_relaxed);
+		if (item >= task->count)
 			return;
-		function(context, item, thread);
+		task->function(task->context, item, thread);
 	}
+}
+
+/* The task started last that has items left. */
+static struct task *find_task(struct pool *pool)
+{
+	for (uint32_t i = pool->depth; i-- > 0;)
+		if (atomic_load_explicit(&pool->tasks[i].next, memory_order_relaxed) < pool->tasks[i].count)
+			return &pool->tasks[i];
+	return NULL;
 }
 
 static void *work(void *argument)
 {
 	struct worker *worker = argument;
 	struct pool *pool = worker->pool;
-	uint64_t seen = 0;
 	pthread_mutex_lock(&pool->lock);
 	while (!pool->stop) {
-		if (!pool->open || pool->task == seen) {
+		struct task *task = find_task(pool);
+		if (!task) {
 			pthread_cond_wait(&pool->wake, &pool->lock);
 			continue;
 		}
-		seen = pool->task;
-		pool->busy++;
-		pool_function function = pool->function;
-		void *context = pool->context;
-		uint32_t count = pool->count;
+		task->busy++;
 		pthread_mutex_unlock(&pool->lock);
-		take_items(pool, function, context, count, worker->number);
+		take_items(task, worker->number);
 		pthread_mutex_lock(&pool->lock);
-		if (--pool->busy == 0)
+		if (--task->busy == 0)
 			pthread_cond_signal(&pool->done);
 	}
 	pthread_mutex_unlock(&pool->lock);
@@ -126,19 +134,18 @@ void pool_destroy(struct pool **pool)
 
 uint32_t pool_threads(const struct pool *pool)
 {
-	return pool->worker_count + 1;
+	return pool ? pool->worker_count + 1 : 1;
 }
 
 void pool_start(struct pool *pool, pool_function function, void *context, uint32_t count)
 {
-	assert(!pool->open);
+	assert(pool->depth < POOL_MAX_TASKS);
 	pthread_mutex_lock(&pool->lock);
-	pool->function = function;
-	pool->context = context;
-	pool->count = count;
-	atomic_store_explicit(&pool->next, 0, memory_order_relaxed);
-	pool->task++;
-	pool->open = true;
+	struct task *task = &pool->tasks[pool->depth++];
+	task->function = function;
+	task->context = context;
+	task->count = count;
+	atomic_store_explicit(&task->next, 0, memory_order_relaxed);
 	if (count > 1)
 		pthread_cond_broadcast(&pool->wake);
 	pthread_mutex_unlock(&pool->lock);
@@ -146,21 +153,25 @@ void pool_start(struct pool *pool, pool_function function, void *context, uint32
 
 void pool_finish(struct pool *pool)
 {
-	if (!pool->open)
+	if (!pool->depth)
 		return;
-	take_items(pool, pool->function, pool->context, pool->count, 0);
+	struct task *task = &pool->tasks[pool->depth - 1];
+	take_items(task, 0);
 	pthread_mutex_lock(&pool->lock);
 	/* Who still sleeps is not waited for. */
-	pool->open = false;
-	while (pool->busy > 0)
+	pool->depth--;
+	while (task->busy > 0)
 		pthread_cond_wait(&pool->done, &pool->lock);
 	pthread_mutex_unlock(&pool->lock);
 }
 
 void pool_run(struct pool *pool, pool_function function, void *context, uint32_t count)
 {
-	if (!count)
+	if (pool && count > 1) {
+		pool_start(pool, function, context, count);
+		pool_finish(pool);
 		return;
-	pool_start(pool, function, context, count);
-	pool_finish(pool);
+	}
+	for (uint32_t i = 0; i < count; i++)
+		function(context, i, 0);
 }
