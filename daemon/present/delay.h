@@ -7,8 +7,8 @@
  *
  * Where T is p / q vblanks exactly, ages lie at q places, and the delay is one
  * of them, so that real frames have phase 0. It stays there while some frames
- * still come at that age, and moves when three quarters of the last 0.4 s came
- * more than half a vblank away from it.
+ * still come at that age, and moves when three quarters of the last 0.4 s, or
+ * all of the last 0.2 s, came more than half a vblank away from it.
  *
  * Elsewhere ages sweep through one vblank from the least age at which frames
  * are ready, and following them would be a slow beat in what is shown. The
@@ -17,7 +17,8 @@
  *
  * It moves by 60 ms a second (motion 6% faster for a third of a second at
  * most), 2 ms a second for what is less than a tenth of a vblank, and at once
- * beyond two vblanks: then it is another scene or time base.
+ * beyond two vblanks: then it is another scene or time base. A display that goes
+ * over to another mode begins it anew: ages on the old vblanks say nothing.
  */
 #ifndef PURSUIT_DELAY_H
 #define PURSUIT_DELAY_H
@@ -39,6 +40,7 @@ struct delay {
 	struct delay_sample samples[DELAY_HISTORY];
 	uint32_t count;    /* since the time base was taken anew; the newest are kept */
 	uint64_t moved_ns; /* when delay_ns was last moved */
+	double vblank_ns;  /* of the samples */
 	bool sweeps;       /* followed as a sweep */
 	bool moving;       /* fast, until it is there */
 };

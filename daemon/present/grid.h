@@ -17,6 +17,7 @@ struct grid {
 	uint64_t denominator;
 	uint64_t epoch_ns; /* of vblank epoch_vblank */
 	uint64_t epoch_vblank;
+	uint64_t doubt_ppb; /* of the period, if learned: three standard deviations, in parts of 1e9; 0: exact */
 };
 
 __extension__ typedef unsigned __int128 grid_wide;

@@ -3,7 +3,6 @@
 
 #include "daemon/present/interval.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -15,17 +14,6 @@
 #define NEWEST_AGREED 4u
 /* So much another rate is a step and no noise. */
 #define STEP_PART 0.2
-#define FRACTIONS 5u
-/* The two rates slip against each other by a vblank in 33 s at 120 Hz. */
-#define SLIP 2.5e-4
-#define DOUBT_MOST 2e-3
-/* So much another period is another mode. */
-#define OTHER_MODE 0.02
-/* The display's period is learned too, and what is found in so few frames may be its noise. */
-#define SURE_AFTER 64u
-#define DOUBTFUL_AFTER 16u
-/* After so many frames a client that does not tick never will. */
-#define IRREGULAR_AFTER 64u
 
 static int compare(const void *a, const void *b)
 {
@@ -89,27 +77,16 @@ static void forget(struct interval *interval, uint32_t count)
 	interval->count = count;
 }
 
-static void start_ticks(struct interval *interval, uint64_t frame_id, uint64_t time_ns)
-{
-	vblanks_init(&interval->ticks, UINT64_C(1000000000), interval->interval_ns, time_ns);
-	vblanks_add(&interval->ticks, frame_id, time_ns);
-	interval->fraction = 1;
-}
-
-static void learn(struct interval *interval, uint64_t interval_ns, uint64_t frame_id, uint64_t time_ns)
+static void learn(struct interval *interval, uint64_t interval_ns)
 {
 	if (interval_ns < INTERVAL_MIN_NS || interval_ns > INTERVAL_MAX_NS)
 		return;
 	const bool first = interval->interval_ns == 0;
 	interval->history[interval->count++ % INTERVAL_HISTORY] = interval_ns;
-	const bool step = stepped(interval);
-	if (step)
+	interval->stepped = first || stepped(interval);
+	if (interval->stepped && !first)
 		forget(interval, NEWEST_AGREED);
 	interval->interval_ns = mean_of(interval, window_of(interval));
-	if (first || step)
-		start_ticks(interval, frame_id, time_ns);
-	else
-		vblanks_add(&interval->ticks, frame_id, time_ns);
 }
 
 void interval_add(struct interval *interval, uint64_t frame_id, uint64_t time_ns, uint64_t declared_ns)
@@ -119,37 +96,6 @@ void interval_add(struct interval *interval, uint64_t frame_id, uint64_t time_ns
 	const uint64_t passed = known ? time_ns - interval->last_ns : 0;
 	interval->last_id = frame_id;
 	interval->last_ns = time_ns;
-	learn(interval, declared_ns && gap == 1 ? declared_ns : passed, frame_id, time_ns);
-}
-
-/* The fraction that the periods speak for now. */
-static uint32_t find_fraction(const struct interval *interval, double period_ns)
-{
-	const struct vblanks *ticks = &interval->ticks;
-	if (!vblanks_known(ticks))
-		return ticks->stamps > IRREGULAR_AFTER ? 0 : interval->fraction;
-	/* The error of a slope that was fitted through so many points (standard deviation, three times). */
-	const double n = ticks->memory, doubt = 3.0 * ticks->spread_ns * sqrt(12.0) / (n * sqrt(n)) / ticks->period_ns;
-	for (uint32_t q = 1; q <= FRACTIONS; q++) {
-		const double vblanks = q * ticks->period_ns / period_ns;
-		const double slip = fabs(vblanks - round(vblanks)) / vblanks;
-		const bool told_apart = ticks->spread_ns < period_ns / (6.0 * q);
-		if (vblanks > 0.5 && told_apart && slip <= SLIP + (interval->fraction == q ? fmin(doubt, DOUBT_MOST) : 0.0))
-			return q;
-	}
-	return 0;
-}
-
-void interval_compare(struct interval *interval, double period_ns)
-{
-	if (interval->interval_ns == 0)
-		return;
-	if (fabs(period_ns - interval->period_ns) > OTHER_MODE * period_ns)
-		interval->fraction = interval->found = 1;
-	interval->period_ns = period_ns;
-	const uint32_t found = find_fraction(interval, period_ns);
-	interval->found_count = found == interval->found ? interval->found_count + 1 : 1;
-	interval->found = found;
-	if (interval->found_count > (found ? SURE_AFTER : DOUBTFUL_AFTER))
-		interval->fraction = found;
+	interval->stepped = false;
+	learn(interval, declared_ns && gap == 1 ? declared_ns : passed);
 }

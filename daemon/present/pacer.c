@@ -67,7 +67,12 @@ void pacer_add_frame(struct pacer *pacer, const struct pacer_frame *frame)
 	if (next.ready_ns == 0)
 		next.ready_ns = next.intake_ns;
 	interval_add(&pacer->interval, next.frame_id, next.time_ns, next.interval_ns);
-	interval_compare(&pacer->interval, vblank_ns(pacer));
+	if (pacer->interval.stepped)
+		ratio_restart(&pacer->ratio, next.frame_id, next.time_ns, pacer->interval.interval_ns);
+	else if (pacer->interval.interval_ns != 0)
+		ratio_add(&pacer->ratio, next.frame_id, next.time_ns);
+	if (pacer->interval.interval_ns != 0)
+		ratio_compare(&pacer->ratio, &pacer->params.grid);
 	pacer->interval_ns = pacer->interval.interval_ns;
 	const double ratio = (double)pacer->interval_ns / vblank_ns(pacer);
 	pacer->passes_through = ratio > 0.0 && ratio <= (pacer->passes_through ? PASS_THROUGH_UNTIL : PASS_THROUGH_RATIO);
@@ -120,7 +125,7 @@ static void decide_real(struct pacer *pacer, struct pacer_decision *decision)
 	const struct delay_sample sample = {.age_ns = age_of(&pacer->frame, decision->target_ns),
 										.ready_ns = age_of(&pacer->frame, pacer->frame.ready_ns),
 										.time_ns = decision->target_ns};
-	delay_add(&pacer->delay, &sample, pacer->interval.fraction, vblank_ns(pacer));
+	delay_add(&pacer->delay, &sample, pacer->ratio.fraction, vblank_ns(pacer));
 	if (!pacer->params.fixed_delay)
 		pacer->delay_ns = pacer->delay.delay_ns;
 	pacer->frame_is_new = false;

@@ -9,7 +9,8 @@
  * a display's true period and phase are learned (vblanks.h).
  *
  * phase = (target vblank - real frame's time - display delay) / T, with T of
- * interval.h and the display delay of delay.h: constants for a steady client,
+ * interval.h and the display delay of delay.h, which ratio.h tells how the two
+ * rates go together: constants for a steady client,
  * so that it gets steady phases.
  *
  * N is predicted: the next real frame's time is this one's + T, and it is
@@ -27,6 +28,7 @@
 #include "daemon/present/delay.h"
 #include "daemon/present/grid.h"
 #include "daemon/present/interval.h"
+#include "daemon/present/ratio.h"
 
 /* A real frame's first showing is plain up to this |phase|. */
 #define PACER_PLAIN_PHASE 0.05
@@ -71,6 +73,7 @@ struct pacer {
 	uint64_t interval_ns; /* T; 0 unknown */
 	int64_t delay_ns;     /* display delay */
 	struct interval interval;
+	struct ratio ratio;
 	struct delay delay;
 	uint64_t first_vblank; /* of the newest real frame's first showing */
 	uint32_t n;            /* of the newest real frame, once shown */

@@ -45,13 +45,13 @@ static double distance(const struct vblanks *v, uint64_t time_ns)
 	return (double)(int64_t)(time_ns - v->base_ns) - v->rest_ns;
 }
 
-/* Begins a line at this stamp. */
-static void restart(struct vblanks *v, uint64_t time_ns, double period_ns)
+/* Begins a line at this stamp. spread_ns: as far from it as stamps are thought to lie. */
+static void restart(struct vblanks *v, uint64_t time_ns, double period_ns, double spread_ns)
 {
 	v->base_ns = time_ns;
 	v->rest_ns = 0.0;
 	v->period_ns = limit(period_ns, PERIOD_MIN_NS, PERIOD_MAX_NS);
-	v->spread_ns = v->period_ns / 16.0;
+	v->spread_ns = fmin(spread_ns, v->period_ns / 16.0);
 	v->bias_ns = 0.0;
 	v->memory = MEMORY_FIRST;
 	v->strays = 0;
@@ -66,7 +66,7 @@ void vblanks_init(struct vblanks *v, uint64_t numerator, uint64_t denominator, u
 		v->wished.numerator = 120;
 		v->wished.denominator = 1;
 	}
-	restart(v, now_ns, grid_period_ns(&v->wished));
+	restart(v, now_ns, grid_period_ns(&v->wished), INFINITY);
 }
 
 /* The stamp's distance from the line moves the line, unless it is a stray. */
@@ -87,7 +87,8 @@ static void fit(struct vblanks *v, uint64_t vblanks, uint64_t time_ns)
 	const double n = v->memory, settled = v->memory > MEMORY_KNOWN ? limit(off, -3.0 * spread, 3.0 * spread) : off;
 	v->period_ns = limit(period + 6.0 / (n * (n + 1.0)) * settled / (double)vblanks, PERIOD_MIN_NS, PERIOD_MAX_NS);
 	move_base(v, 0, 2.0 * (2.0 * n - 1.0) / (n * (n + 1.0)) * settled);
-	v->spread_ns += (fabs(off) - v->spread_ns) / fmin(n, 64.0);
+	/* A mean of those since the beginning, which what was thought then weighs in for two. */
+	v->spread_ns += (fabs(off) - v->spread_ns) / limit(n - MEMORY_FIRST + 2.0, 3.0, 64.0);
 	v->bias_ns += (off - v->bias_ns) / 24.0;
 	if (v->memory > MEMORY_KNOWN && fabs(v->bias_ns) > 0.75 * spread) { /* it bends: forget what was */
 		v->memory = MEMORY_KNOWN / 2;
@@ -114,10 +115,14 @@ static bool newest_intervals(const struct vblanks *v, uint32_t count, double *so
 	return true;
 }
 
-/* The period that the newest stamps speak for, 0: the one that is known. counted: a multiple is no missed stamps. */
-static double find_step(const struct vblanks *v, bool counted)
+/*
+ * The period that the newest stamps speak for, 0: the one that is known. counted: a multiple is no missed stamps.
+ * spread_ns: how far intervals of it lie from each other.
+ */
+static double find_step(const struct vblanks *v, bool counted, double *spread_ns)
 {
 	double sorted[VBLANKS_INTERVALS];
+	*spread_ns = INFINITY;
 	if (newest_intervals(v, VBLANKS_INTERVALS, sorted) && sorted[0] > 1.5 * v->period_ns)
 		return sorted[VBLANKS_INTERVALS / 2];
 	if (!newest_intervals(v, STRAYS_MOST, sorted))
@@ -126,7 +131,8 @@ static double find_step(const struct vblanks *v, bool counted)
 	const double ratio = median / v->period_ns;
 	const bool multiple = !counted && ratio > 1.5 && fabs(ratio - round(ratio)) < 0.05;
 	/* Six of eight intervals lie within so much; their median is surer by far. */
-	const double doubt = (sorted[STRAYS_MOST - 2] - sorted[1]) / v->period_ns;
+	*spread_ns = sorted[STRAYS_MOST - 2] - sorted[1];
+	const double doubt = *spread_ns / v->period_ns;
 	if (ratio < 0.85 || (fabs(ratio - 1.0) > 0.01 + 1.5 * doubt && !multiple))
 		return median;
 	if (v->strays < STRAYS_MOST)
@@ -140,11 +146,12 @@ static void learn_interval(struct vblanks *v, double interval_ns, bool counted, 
 	if (interval_ns < PERIOD_MIN_NS / 2.0 || interval_ns > PERIOD_MAX_NS)
 		return;
 	v->intervals[v->interval_count++ % VBLANKS_INTERVALS] = interval_ns;
-	const double step_ns = find_step(v, counted);
+	double spread_ns;
+	const double step_ns = find_step(v, counted, &spread_ns);
 	if (step_ns == 0.0)
 		return;
 	v->steps++;
-	restart(v, time_ns, step_ns);
+	restart(v, time_ns, step_ns, spread_ns);
 }
 
 /* ---- stamps ---- */
@@ -164,7 +171,7 @@ static uint64_t first_stamp(struct vblanks *v, uint64_t sequence, uint64_t time_
 {
 	const uint64_t early = (uint64_t)(v->period_ns * (1.0 - EARLY));
 	v->number = grid_at_or_after(&v->wished, time_ns > early ? time_ns - early : 0);
-	restart(v, time_ns, v->period_ns);
+	restart(v, time_ns, v->period_ns, INFINITY);
 	v->started = true;
 	v->last_ns = time_ns;
 	v->last_sequence = sequence;
@@ -180,7 +187,7 @@ static uint64_t backwards(struct vblanks *v, uint64_t sequence, uint64_t time_ns
 	v->backwards = 0;
 	v->steps++;
 	v->number++;
-	restart(v, time_ns, v->period_ns);
+	restart(v, time_ns, v->period_ns, INFINITY);
 	v->last_ns = time_ns;
 	v->last_sequence = sequence;
 	return v->number;
@@ -204,7 +211,7 @@ uint64_t vblanks_add(struct vblanks *v, uint64_t sequence, uint64_t time_ns)
 	v->missed += vblanks > 1 ? vblanks - 1 : 0;
 	if (passed > PAUSE_VBLANKS) {
 		v->number += vblanks;
-		restart(v, time_ns, v->period_ns);
+		restart(v, time_ns, v->period_ns, INFINITY);
 		v->memory = MEMORY_KNOWN;
 		return v->number;
 	}
@@ -216,6 +223,13 @@ uint64_t vblanks_add(struct vblanks *v, uint64_t sequence, uint64_t time_ns)
 	return v->number;
 }
 
+/* Three standard deviations of a slope through so many points, of which 1.25 mean distances are one. */
+static uint64_t doubt_ppb(const struct vblanks *v)
+{
+	const double n = v->memory, spread = 1.25 * fmax(v->spread_ns, SPREAD_LEAST_NS);
+	return (uint64_t)limit(3e9 * spread * sqrt(12.0) / (n * sqrt(n)) / v->period_ns, 1.0, 1e9);
+}
+
 struct grid vblanks_get_grid(const struct vblanks *v)
 {
 	if (!v->started)
@@ -223,7 +237,8 @@ struct grid vblanks_get_grid(const struct vblanks *v)
 	return (struct grid){.numerator = UINT64_C(1000000000000000),
 						 .denominator = (uint64_t)(v->period_ns * 1e6 + 0.5),
 						 .epoch_ns = v->base_ns,
-						 .epoch_vblank = v->number};
+						 .epoch_vblank = v->number,
+						 .doubt_ppb = doubt_ppb(v)};
 }
 
 bool vblanks_known(const struct vblanks *v)

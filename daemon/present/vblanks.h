@@ -18,7 +18,7 @@
  *   new period       eight stamps in a row off the line, or eight intervals
  *                    that agree on another period: the line is begun anew at
  *                    the newest stamp. A multiple of the period may as well be
- *                    stamps missed, and is believed after 32 without exception.
+ *                    stamps missed, and is believed after 16 without exception.
  *   long pauses      (64 vblanks) are counted by time, and the phase is taken
  *                    anew, for the period is not known to a millionth.
  *
@@ -33,7 +33,7 @@
 
 #include "daemon/present/grid.h"
 
-#define VBLANKS_INTERVALS 32u
+#define VBLANKS_INTERVALS 16u
 
 struct vblanks {
 	struct grid wished; /* until the first stamp */
@@ -63,7 +63,7 @@ void vblanks_init(struct vblanks *vblanks, uint64_t numerator, uint64_t denomina
  */
 uint64_t vblanks_add(struct vblanks *vblanks, uint64_t sequence, uint64_t time_ns);
 
-/* The grid as known now: {1e15, period in 1e-6 ns}, its epoch at the newest stamp's vblank. */
+/* The grid as known now: {1e15, period in 1e-6 ns}, its epoch at the newest stamp's vblank, and the period's doubt. */
 struct grid vblanks_get_grid(const struct vblanks *vblanks);
 
 /* Period and phase rest on enough stamps to be called measured. */

@@ -14,6 +14,10 @@
 
 #define START 1e9
 #define HELD 64u /* frames under way */
+/* What is ready so close to a vblank may be thought to be on either side of it: times are whole ns. */
+#define EDGE_NS 1000.0
+/* Two crystals' rates differ by no more. */
+#define DRIFT_MOST 2.5e-4
 
 const struct simulated_display simulated_displays[] = {
 	{.name = "120", .hz = 120},
@@ -143,8 +147,10 @@ static struct sent send_frame(struct run *run)
 
 static void send_until(struct run *run, double time_ns)
 {
-	while (run->held_count < HELD && run->moment_ns < time_ns)
-		run->held[run->held_count++] = send_frame(run);
+	while (run->held_count < HELD && run->moment_ns < time_ns) {
+		const struct sent frame = send_frame(run);
+		run->held[run->held_count++] = frame;
+	}
 }
 
 /* ---- the daemon ---- */
@@ -182,7 +188,7 @@ static void take(struct run *run, uint64_t vblank)
 	pacer_add_frame(&run->pacer, &frame);
 	run->taken = newest;
 	run->has_taken = true;
-	run->first_possible = newest.ready_ns <= run->vblank_ns - run->period_ns ? vblank - 1 : vblank;
+	run->first_possible = newest.ready_ns + EDGE_NS <= run->vblank_ns - run->period_ns ? vblank - 1 : vblank;
 }
 
 static void count_real(struct run *run, const struct pacer_decision *decision, uint64_t vblank)
@@ -297,8 +303,14 @@ static double percentile(double *values, uint64_t count, double share)
 	return values[(uint64_t)(share * (double)(count - 1))];
 }
 
-static double off_of(const struct shown *shown, double delay_ns)
+/* An even march: the delay, and by how much it grows where two crystals differ. */
+struct march {
+	double at_ns, delay_ns, drift;
+};
+
+static double off_of(const struct shown *shown, const struct march *march)
 {
+	const double delay_ns = march->delay_ns + march->drift * (shown->vblank_ns - march->at_ns);
 	return fabs(shown->vblank_ns - shown->moment_ns - delay_ns) / shown->interval_ns;
 }
 
@@ -311,33 +323,59 @@ static uint64_t last_quarter(const struct run *run)
 	return first;
 }
 
-/* The constant delay that the last quarter speaks for. */
-static double find_delay(const struct run *run, double *scratch)
+/* The middle delay of the pictures from `from` to before `to`. */
+static double middle_delay(const struct run *run, uint64_t from, uint64_t to, double *scratch)
 {
-	const uint64_t from = last_quarter(run);
-	for (uint64_t i = from; i < run->shown_count; i++)
+	for (uint64_t i = from; i < to; i++)
 		scratch[i - from] = run->shown[i].vblank_ns - run->shown[i].moment_ns;
-	return percentile(scratch, run->shown_count - from, 0.5);
+	return percentile(scratch, to - from, 0.5);
 }
 
-/* The first moment after `from_ns` from which on 19 of 20 pictures of half a second lie within 0.05. */
-static double find_settling(const struct run *run, double from_ns, double delay_ns)
+static uint64_t shown_since(const struct run *run, double time_ns)
 {
 	uint64_t first = 0;
-	while (first < run->shown_count && run->shown[first].vblank_ns < from_ns)
+	while (first < run->shown_count && run->shown[first].vblank_ns < time_ns)
 		first++;
+	return first;
+}
+
+/* The march that these pictures speak for. */
+static struct march find_march(const struct run *run, uint64_t from, uint64_t to, double *scratch)
+{
+	const uint64_t middle = (from + to) / 2;
+	if (to - from < 2)
+		return (struct march){0.0, 0.0, 0.0};
+	const double way = middle_delay(run, middle, to, scratch) - middle_delay(run, from, middle, scratch);
+	const double drift = 2.0 * way / (run->shown[to - 1].vblank_ns - run->shown[from].vblank_ns);
+	return (struct march){.at_ns = run->shown[middle].vblank_ns,
+						  .delay_ns = middle_delay(run, from, to, scratch),
+						  .drift = fabs(drift) <= DRIFT_MOST ? drift : 0.0};
+}
+
+/*
+ * After `from_ns`: the first moment from which on 19 of 20 pictures of half a second, and of all up to five seconds
+ * after from_ns, lie within 0.05 of the march of the last four of these.
+ */
+static double find_settling(const struct run *run, double from_ns, double *scratch)
+{
+	const uint64_t first = shown_since(run, from_ns), last = shown_since(run, from_ns + 5e9);
 	if (last_quarter(run) == run->shown_count)
 		return 0.0; /* it passes through */
-	for (uint64_t i = first; i < run->shown_count; i++) {
+	const struct march march = find_march(run, shown_since(run, from_ns + 1e9), last, scratch);
+	uint64_t off_later = 0;
+	double settled_ns = INFINITY;
+	for (uint64_t i = last; i-- > first;) {
 		uint64_t count = 0, off = 0;
-		for (uint64_t j = i; j < run->shown_count && run->shown[j].vblank_ns < run->shown[i].vblank_ns + 5e8; j++) {
+		const bool is_off = off_of(&run->shown[i], &march) > 0.0501;
+		off_later += is_off;
+		for (uint64_t j = i; j < last && run->shown[j].vblank_ns < run->shown[i].vblank_ns + 5e8; j++) {
 			count++;
-			off += off_of(&run->shown[j], delay_ns) > 0.0501;
+			off += off_of(&run->shown[j], &march) > 0.0501;
 		}
-		if (off_of(&run->shown[i], delay_ns) <= 0.0501 && off * 20 <= count)
-			return (run->shown[i].vblank_ns - from_ns) / 1e9;
+		if (!is_off && off * 20 <= count && off_later * 20 <= last - i)
+			settled_ns = run->shown[i].vblank_ns;
 	}
-	return INFINITY;
+	return (settled_ns - from_ns) / 1e9;
 }
 
 static void judge(struct run *run)
@@ -347,9 +385,9 @@ static void judge(struct run *run)
 	double *scratch = calloc(run->simulation->vblanks + 1, sizeof(double));
 	if (!scratch)
 		abort();
-	const double delay_ns = find_delay(run, scratch);
+	const struct march march = find_march(run, from, run->shown_count, scratch);
 	for (uint64_t i = from; i < run->shown_count; i++)
-		scratch[i - from] = off_of(&run->shown[i], delay_ns);
+		scratch[i - from] = off_of(&run->shown[i], &march);
 	result->phase_p50 = percentile(scratch, count, 0.5);
 	result->phase_p99 = percentile(scratch, count, 0.99);
 	result->phase_most = percentile(scratch, count, 1.0);
@@ -359,7 +397,7 @@ static void judge(struct run *run)
 						   : steps                       ? run->middle_ns + run->simulation->display.suspend_s * 1e9
 						   : run->shown_count            ? run->shown[0].vblank_ns
 														 : 0.0;
-	result->settle_s = find_settling(run, from_ns, delay_ns);
+	result->settle_s = find_settling(run, from_ns, scratch);
 	result->delay_ms = (double)run->pacer.delay_ns / 1e6;
 	double *delays = run->delays + from;
 	result->delay_span_ms = count ? (percentile(delays, count, 1.0) - percentile(delays, count, 0.0)) / 1e6 : 0.0;

@@ -3,6 +3,8 @@
 
 /* Bounds on what the pacer does with simulated displays and clients: 10,000 vblanks each, the same everywhere. */
 
+#include <math.h>
+
 #include "tests/pacing/simulation.h"
 #include "tests/test.h"
 
@@ -32,15 +34,18 @@ static void run(const char *display, const char *client, uint64_t vblanks, struc
 		.display = *display_of(display), .client = *client_of(client), .vblanks = vblanks};
 	const int before = test_state.failed;
 	simulation_run(&simulation, result);
-	/* What holds for all of them. Knife edges between guessed and true vblanks are one frame in a thousand. */
+	/*
+	 * What holds for all of them. A real frame is later than it could be only while nobody knows the display: for the
+	 * eight stamps after it has stepped, or where noise in them misleads.
+	 */
 	const double noisy = simulation.display.noise_us > 0 ? 0.015 : 0.0015;
 	const double lost = simulation.display.miss + noisy;
-	CHECK(result->late <= noisy * (double)vblanks);
+	CHECK(result->late <= (simulation.display.step_hz > 0 ? 6u : simulation.display.noise_us > 0 ? 2u : 0u));
 	CHECK(result->most_late <= 1);
 	CHECK(result->dropped <= 2 + (lost > 0.01 ? lost * (double)vblanks : 0));
 	CHECK(result->doubled <= 6);
 	const double shown = (double)(result->real + result->in_betweens + result->repeats);
-	CHECK(shown >= (double)result->vblanks * (0.985 - 1.5 * simulation.display.miss));
+	CHECK(shown >= (double)result->vblanks * (0.98 - 1.5 * simulation.display.miss));
 	if (test_state.failed != before)
 		printf("       ... %s on %s\n", client, display);
 }
@@ -60,7 +65,6 @@ static void test_steady_clients(void)
 			CHECK_NEAR(r.phase_p99, 0, 0.05);
 			CHECK_NEAR(r.phase_most, 0, PHASE_MOST);
 			CHECK_NEAR(r.delay_span_ms, 0, d == 3 && c == 10 ? 1.5 : 1e-3); /* 144 on 60 passes through */
-			CHECK(r.settle_s < 2.0);
 			CHECK(r.in_betweens == 0 || r.wrong_n <= 0.012 * (double)r.real);
 		}
 	}
@@ -87,7 +91,7 @@ static void test_crystals_that_differ(void)
 	for (size_t c = 1; c < STEADY; c++) {
 		struct simulation_result r;
 		run("119.99", steady[c], VBLANKS, &r);
-		CHECK_NEAR(r.phase_p99, 0, 0.08);
+		CHECK_NEAR(r.phase_p99, 0, 0.05);
 		CHECK(r.delay_span_ms < 2.0); /* in 21 s */
 	}
 }
@@ -138,44 +142,46 @@ static void test_unsteady_displays(void)
 	}
 }
 
-/* After a step all is settled in half a second; where the display steps too, or more than one thing, in a second. */
-static void test_steps_settle(void)
+/* Where it takes longer to settle, and why. */
+static double settling_bound(const struct simulated_display *display, const struct simulated_client *client)
 {
-	static const char *const clients[] = {"30 to 120", "60 to 40", "40 to 60", "60 slower"};
-	static const char *const displays[] = {"120", "119.88", "143.9", "60", "119.88 jitter", "120 misses"};
-	for (size_t d = 0; d < 6; d++) {
-		for (size_t c = 0; c < 4; c++) {
+	/* The rates' crystals slip by a vblank in 100 s, and this falls into the seconds after the ramp. */
+	if (strcmp(display->name, "119.99") == 0 && client->ramps)
+		return HUGE_VAL;
+	/* Half a ms of noise in each moment hides for a hundred frames that 60 is not 59.94. */
+	if (strncmp(display->name, "119.88", 6) == 0 && strcmp(client->name, "60 normal") == 0)
+		return 2.0;
+	/* It stops for 0.3 s just then. */
+	return display->step_hz > 0.0 && client->stall_ms > 0.0 ? 0.8 : 0.5;
+}
+
+/* From the start on, after steps of client and display, ramps, and sleep. */
+static void test_all_settle_in_half_a_second(void)
+{
+	for (const struct simulated_display *d = simulated_displays; d->name; d++) {
+		for (const struct simulated_client *c = simulated_clients; c->name; c++) {
+			const int before = test_state.failed;
 			struct simulation_result r;
-			run(displays[d], clients[c], VBLANKS, &r);
-			CHECK(r.settle_s < 0.5);
-			CHECK_NEAR(r.phase_p99, 0, 0.052);
+			run(d->name, c->name, VBLANKS, &r);
+			CHECK(!(r.settle_s > settling_bound(d, c)));
+			if (c->noise_ms == 0.0 && c->uneven == 0.0 && !c->ramps)
+				CHECK_NEAR(r.phase_p99, 0, 0.05);
+			if (test_state.failed != before)
+				printf("       ... %s on %s\n", c->name, d->name);
 		}
-		struct simulation_result r;
-		run(displays[d], "60 ramp 40", VBLANKS, &r);
-		CHECK(r.settle_s < 2.5);
 	}
 }
 
-static void test_the_display_steps(void)
-{
-	static const char *const displays[] = {"120 to 144", "120 to 60"};
-	for (size_t d = 0; d < 2; d++) {
-		for (size_t c = 0; c < STEADY; c++) {
-			struct simulation_result r;
-			run(displays[d], steady[c], VBLANKS, &r);
-			CHECK(r.settle_s < 1.25);
-			CHECK_NEAR(r.phase_p99, 0, 0.05);
-		}
-	}
-}
-
-/* The machine sleeps for ten seconds: as if nothing had been. */
-static void test_suspend(void)
+/* Half the rate without a count of vblanks might as well be every second stamp missed. */
+static void test_half_the_rate_uncounted(void)
 {
 	for (size_t c = 0; c < STEADY; c++) {
+		struct simulation s = {
+			.display = *display_of("120 to 60"), .client = *client_of(steady[c]), .vblanks = VBLANKS};
 		struct simulation_result r;
-		run("120 suspend", steady[c], VBLANKS, &r);
-		CHECK(r.settle_s < 0.5);
+		s.display.counts = false;
+		simulation_run(&s, &r);
+		CHECK(r.settle_s < 0.7); /* of which 0.27 pass until it is believed */
 		CHECK_NEAR(r.phase_p99, 0, 0.05);
 	}
 }
@@ -201,9 +207,8 @@ int main(void)
 	RUN(test_ten_minutes_of_film);
 	RUN(test_unsteady_clients);
 	RUN(test_unsteady_displays);
-	RUN(test_steps_settle);
-	RUN(test_the_display_steps);
-	RUN(test_suspend);
+	RUN(test_all_settle_in_half_a_second);
+	RUN(test_half_the_rate_uncounted);
 	RUN(test_chance_is_repeatable);
 	return test_result();
 }
