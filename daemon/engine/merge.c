@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/engine/pool.h"
+
 #define LARGEST 8u
 /* Pixels by which cells may differ in size, and depth that a vertex may be off: both far below what shows. */
 #define POSITION_TOLERANCE 1e-3f
@@ -85,29 +87,73 @@ static bool is_flat(const struct plan *plan, const struct merge_leaf *leaf, cons
 	return true;
 }
 
-static void add_leaf(struct merge *merge, const struct plan *plan, const struct merge_leaf *leaf)
+/* A merge under way. */
+struct work {
+	struct merge *merge;
+	const struct plan *plan;
+	struct tolerance tolerance;
+	uint32_t *indices;
+};
+
+/* Rows of blocks: the outermost row of cells, then eights of them. */
+static uint32_t first_row(uint32_t block_row)
 {
-	uint8_t *top = merge->used + (size_t)leaf->row * plan->columns + leaf->column;
-	uint8_t *bottom = top + (size_t)leaf->size * plan->columns;
-	top[0] = top[leaf->size] = bottom[0] = bottom[leaf->size] = 1;
-	merge->leaves[merge->leaf_count++] = *leaf;
+	return block_row ? 1 + (block_row - 1) * LARGEST : 0;
 }
 
-static void divide(struct merge *merge, const struct plan *plan, struct merge_leaf leaf,
-				   const struct tolerance *tolerance)
+static struct merge_leaf *leaves_of(const struct work *work, uint32_t block_row)
 {
-	uint32_t columns = plan->columns - 1, rows = plan->rows - 1;
+	return work->merge->leaves + (size_t)first_row(block_row) * (work->plan->columns - 1);
+}
+
+/* Rows of blocks share the vertices between them. */
+static void use(uint8_t *vertex)
+{
+	__atomic_store_n(vertex, 1, __ATOMIC_RELAXED);
+}
+
+static void add_leaf(const struct work *work, uint32_t block_row, const struct merge_leaf *leaf)
+{
+	uint8_t *top = work->merge->used + (size_t)leaf->row * work->plan->columns + leaf->column;
+	uint8_t *bottom = top + (size_t)leaf->size * work->plan->columns;
+	use(top);
+	use(top + leaf->size);
+	use(bottom);
+	use(bottom + leaf->size);
+	leaves_of(work, block_row)[work->merge->rows[block_row].leaves++] = *leaf;
+}
+
+static void divide(const struct work *work, uint32_t block_row, struct merge_leaf leaf)
+{
+	uint32_t columns = work->plan->columns - 1, rows = work->plan->rows - 1;
 	if (leaf.column >= columns || leaf.row >= rows)
 		return;
 	bool inside = leaf.column + leaf.size <= columns && leaf.row + leaf.size <= rows;
-	if (leaf.size == 1 || (inside && is_flat(plan, &leaf, tolerance))) {
-		add_leaf(merge, plan, &leaf);
+	if (leaf.size == 1 || (inside && is_flat(work->plan, &leaf, &work->tolerance))) {
+		add_leaf(work, block_row, &leaf);
 		return;
 	}
 	uint32_t half = leaf.size / 2;
 	for (uint32_t i = 0; i < 4; i++)
-		divide(merge, plan, (struct merge_leaf){leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half},
-			   tolerance);
+		divide(work, block_row, (struct merge_leaf){leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half});
+}
+
+/* The outermost row and column of cells are halves; blocks begin at the first whole cell. */
+static void divide_row(void *context, uint32_t block_row, uint32_t thread)
+{
+	const struct work *work = context;
+	const struct plan *plan = work->plan;
+	const uint32_t row = first_row(block_row);
+	work->merge->rows[block_row].leaves = 0;
+	if (block_row == 0) {
+		for (uint32_t i = 0; i + 1 < plan->columns; i++)
+			add_leaf(work, 0, &(struct merge_leaf){i, 0, 1});
+		return;
+	}
+	for (uint32_t i = row; i < row + LARGEST && i + 1 < plan->rows; i++)
+		add_leaf(work, block_row, &(struct merge_leaf){0, i, 1});
+	for (uint32_t column = 1; column + 1 < plan->columns; column += LARGEST)
+		divide(work, block_row, (struct merge_leaf){column, row, LARGEST});
 }
 
 static bool reserve(struct merge *merge, const struct plan *plan)
@@ -117,12 +163,13 @@ static bool reserve(struct merge *merge, const struct plan *plan)
 		merge_finish(merge);
 		merge->used = malloc(vertices);
 		merge->leaves = malloc(vertices * sizeof(*merge->leaves));
-		if (!merge->used || !merge->leaves)
+		/* At most as many as vertices: there are at least two in a row. */
+		merge->rows = malloc((vertices / (2 * LARGEST) + 2) * sizeof(*merge->rows));
+		if (!merge->used || !merge->leaves || !merge->rows)
 			return false;
 		merge->capacity = vertices;
 	}
 	memset(merge->used, 0, vertices);
-	merge->leaf_count = 0;
 	return true;
 }
 
@@ -168,24 +215,47 @@ static uint32_t emit(const struct merge *merge, const struct plan *plan, const s
 	return used;
 }
 
-uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float displacement_tolerance, uint32_t *indices)
+static void count_row(void *context, uint32_t block_row, uint32_t thread)
+{
+	const struct work *work = context;
+	struct merge_row *row = &work->merge->rows[block_row];
+	const struct merge_leaf *leaves = leaves_of(work, block_row);
+	uint32_t around[4 * LARGEST], count = 0;
+	for (uint32_t i = 0; i < row->leaves; i++) {
+		uint32_t corners = leaves[i].size == 1 ? 4 : walk_around(work->merge, work->plan, &leaves[i], around);
+		count += corners == 4 ? 6 : 3 * corners;
+	}
+	row->indices = count;
+}
+
+static void emit_row(void *context, uint32_t block_row, uint32_t thread)
+{
+	const struct work *work = context;
+	const struct merge_row *row = &work->merge->rows[block_row];
+	const struct merge_leaf *leaves = leaves_of(work, block_row);
+	uint32_t *indices = work->indices + row->indices;
+	for (uint32_t i = 0; i < row->leaves; i++)
+		indices += emit(work->merge, work->plan, &leaves[i], indices);
+}
+
+uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float displacement_tolerance, struct pool *pool,
+						 uint32_t *indices)
 {
 	/* Depth matters only where triangles lie over each other. */
 	const struct tolerance tolerance = {displacement_tolerance, plan->folded ? DEPTH_TOLERANCE : INFINITY};
+	const uint32_t rows = 1 + (plan->rows - 2 + LARGEST - 1) / LARGEST;
+	struct work work = {merge, plan, tolerance, indices};
 	if (!reserve(merge, plan))
 		return 0;
-	/* The outermost row and column of cells are halves; blocks begin at the first whole cell. */
-	for (uint32_t i = 0; i + 1 < plan->columns; i++)
-		add_leaf(merge, plan, &(struct merge_leaf){i, 0, 1});
-	for (uint32_t row = 1; row + 1 < plan->rows; row += LARGEST) {
-		for (uint32_t i = row; i < row + LARGEST && i + 1 < plan->rows; i++)
-			add_leaf(merge, plan, &(struct merge_leaf){0, i, 1});
-		for (uint32_t column = 1; column + 1 < plan->columns; column += LARGEST)
-			divide(merge, plan, (struct merge_leaf){column, row, LARGEST}, &tolerance);
-	}
+	pool_run(pool, divide_row, &work, rows);
+	pool_run(pool, count_row, &work, rows);
 	uint32_t count = 0;
-	for (uint32_t i = 0; i < merge->leaf_count; i++)
-		count += emit(merge, plan, &merge->leaves[i], indices + count);
+	for (uint32_t i = 0; i < rows; i++) {
+		const uint32_t more = merge->rows[i].indices;
+		merge->rows[i].indices = count;
+		count += more;
+	}
+	pool_run(pool, emit_row, &work, rows);
 	return count;
 }
 
@@ -193,5 +263,6 @@ void merge_finish(struct merge *merge)
 {
 	free(merge->used);
 	free(merge->leaves);
+	free(merge->rows);
 	*merge = (struct merge){0};
 }

@@ -42,7 +42,8 @@ static int make_mesh(struct engine *engine, double phase, struct error *error)
 	engine->has_depth = depth_varies(&engine->plan);
 	/* Merging changes the drawing order. */
 	bool merge = engine->has_depth || !engine->plan.folded;
-	return warp_mesh_begin(&engine->mesh, &engine->plan, merge ? engine->method->tolerance : -1.0f, error);
+	return warp_mesh_begin(&engine->mesh, &engine->plan, merge ? engine->method->tolerance : -1.0f,
+						   engine->executor->pool, error);
 }
 
 int grid_begin(struct engine *engine, struct error *error)
@@ -75,7 +76,7 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 	/* Merged without a look at depths, since nothing folds at the last phase; but here it does. */
 	if (result == 0 && !mesh->too_wild && mesh->folds.count && !engine->plan.folded &&
 		mesh->count < engine->plan.index_count) {
-		result = warp_mesh_begin(mesh, &engine->plan, -1.0f, error);
+		result = warp_mesh_begin(mesh, &engine->plan, -1.0f, engine->executor->pool, error);
 		if (result == 0)
 			result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	}

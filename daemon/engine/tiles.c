@@ -53,9 +53,17 @@ void tiles_mark(struct tiles *tiles, struct box box)
 	for (uint32_t j = y.first; j < y.end; j++)
 		for (uint32_t i = x.first; i < x.end; i++) {
 			uint8_t *tile = &tiles->marked[j * tiles->columns + i];
-			tiles->count += !*tile;
-			*tile = 1;
+			if (!__atomic_load_n(tile, __ATOMIC_RELAXED))
+				__atomic_store_n(tile, 1, __ATOMIC_RELAXED);
 		}
+}
+
+void tiles_sum(struct tiles *tiles)
+{
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < tiles->columns * tiles->rows; i++)
+		count += tiles->marked[i];
+	tiles->count = count;
 }
 
 bool tiles_touch(const struct tiles *tiles, struct box box)

@@ -15,7 +15,7 @@ struct tiles {
 	uint32_t columns, rows;
 	uint8_t *marked;
 	uint32_t capacity;
-	uint32_t count; /* marked */
+	uint32_t count; /* marked; after tiles_sum() */
 };
 
 /* The smallest rectangle around something, pixels. */
@@ -26,7 +26,12 @@ struct box {
 /* All unmarked. False if memory is out. */
 bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile);
 void tiles_finish(struct tiles *tiles);
+
+/* Several threads may mark at a time. */
 void tiles_mark(struct tiles *tiles, struct box box);
+/* Counts the marked ones. */
+void tiles_sum(struct tiles *tiles);
+
 bool tiles_touch(const struct tiles *tiles, struct box box);
 
 /* Marks everything. */

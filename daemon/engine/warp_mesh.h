@@ -23,8 +23,19 @@ struct warp_list {
 	uint32_t first, count;
 };
 
+enum { WARP_PLAIN = 0, WARP_TORN, WARP_FOLDED, WARP_FOLDED_TORN, WARP_LISTS };
+
+/* Of a chunk of triangles: what drawing it costs; how many indices it has for each list, then where they go. */
+struct warp_share {
+	double cost; /* pixels */
+	uint32_t at[WARP_LISTS];
+};
+
+struct pool;
+
 struct warp_mesh {
 	const struct plan *plan;
+	struct pool *pool; /* shares the work: no bit depends on it; NULL: alone */
 	struct merge merge;
 	struct tiles folds;  /* at the phase sorted for, where triangles may lie over each other */
 	struct tiles low;    /* of the source, where L is needed up to the last phase */
@@ -34,6 +45,7 @@ struct warp_mesh {
 	float tolerance;     /* pixels that a vertex may be off; 0: none are merged */
 	float *wildness;     /* by triangle: squared norm of the displacement's gradient */
 	uint8_t *kinds;      /* by triangle: what it needs at the phase sorted for */
+	struct warp_share *shares;
 	uint32_t *lists;     /* of indices into the plan's vertices: all lists below, one after another */
 	uint32_t list_count; /* indices in use */
 	uint32_t capacity;   /* indices */
@@ -51,9 +63,10 @@ struct warp_mesh {
 
 /*
  * Takes the plan, which must stay until the next one. `tolerance`: pixels that a vertex may be
- * off for cells to be merged; negative: none are. 0 or -ENOMEM with a sentence.
+ * off for cells to be merged; negative: none are. `pool` is used by the sorts too. 0 or -ENOMEM with a sentence.
  */
-int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct error *error);
+int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct pool *pool,
+					struct error *error);
 void warp_mesh_finish(struct warp_mesh *mesh);
 
 /* Unmarks all of `low` and `levels` for a picture of that size. 0 or -ENOMEM with a sentence. */
