@@ -11,6 +11,7 @@
 
 #define HELP_COLUMNS 120
 
+static const char *const analysis_choices[] = {"auto", "cpu", "gpu", NULL};
 static const char *const motion_model_choices[] = {"linear", "quadratic", NULL};
 static const char *const blur_choices[] = {"doubtful", "everywhere", "off", NULL};
 static const char *const pattern_choices[] = {"toggle",      "pulse",   "pulse-real", "level-real",
@@ -63,6 +64,10 @@ static const struct option_row rows[] = {
 		threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
 		"Threads that the engine draws with where it runs on the CPU; 0: one for each processor that it may run on, at "
 		"most 8."),
+	CHOICE(
+		analysis, "analysis", OPTION_ENGINE, "auto", analysis_choices,
+		"Who looks at motion and depth: the CPU, or the GPU where the engine draws with one; auto: the CPU, as long as "
+		"frames come in its memory."),
 	CHOICE(motion_model, "motion-model", OPTION_ENGINE, "linear", motion_model_choices,
 		   "How the methods with a grid continue motion: straight on, or with its change since the frame before."),
 	CHOICE(blur, "blur", OPTION_ENGINE, "doubtful", blur_choices,
@@ -452,6 +457,7 @@ int settings_engine_params(const struct settings *settings, struct engine_params
 		.gles = settings->gles,
 		.threads = settings->threads,
 		.method = settings->method,
+		.analysis = (enum engine_analysis)settings->analysis,
 		.motion_model = (enum engine_motion_model)settings->motion_model,
 		.blur = (enum engine_blur)settings->blur,
 		.no_compensation = !settings->compensation,

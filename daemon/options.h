@@ -25,6 +25,7 @@ struct settings {
 	char context[32]; /* auto, egl, egl-device:I, osmesa, cpu */
 	bool gles;
 	uint32_t threads;      /* of the CPU executor; 0: as many as we may run on, at most 8 */
+	uint32_t analysis;     /* enum engine_analysis */
 	uint32_t motion_model; /* enum engine_motion_model */
 	uint32_t blur;         /* enum engine_blur */
 	bool compensation;     /* default true */

@@ -9,7 +9,7 @@ embed.py glsl OUT VERSION LIMITS FILE DEFINE...  the whole text of one variant
 import os
 import sys
 
-PRECISION = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+PRECISION = "precision highp float;\nprecision highp int;\nprecision highp sampler2D;\nprecision highp usampler2D;\n"
 
 
 def read(path):

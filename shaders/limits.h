@@ -31,5 +31,23 @@
 /* Texture units. */
 #define UNIT_PICTURE 0
 #define UNIT_LOW 1
+#define UNIT_MOTION 2
+#define UNIT_DEPTH 3
+
+/* Invocations of a group of the analysis; OpenGL ES 3.1 promises 128. */
+#define ANALYSE_GROUP 64
+/* Words before the tiles in what it finds; pixels a side of the plan's tiles. */
+#define FOUND_HEAD 4
+#define PLAN_TILE_SIDE 64
+/* How it gets depth, and how that becomes z (docs/method.md, 1). */
+#define DEPTH_BITS_NONE 0
+#define DEPTH_BITS_16 1
+#define DEPTH_BITS_24 2
+#define DEPTH_BITS_32F 3
+#define DEPTH_MAP_AS_IS 0
+#define DEPTH_MAP_REVERSED 1
+#define DEPTH_MAP_RANGE 2
+#define DEPTH_MAP_INFINITE 3
+#define DEPTH_MAP_OPEN 4
 
 #endif

@@ -14,5 +14,6 @@ extern const char shader_low_frag[];
 extern const char shader_compensate_frag[];
 extern const char shader_warp_frag[];
 extern const char shader_ui_frag[];
+extern const char shader_analyse_comp[];
 
 #endif

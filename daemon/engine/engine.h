@@ -45,6 +45,13 @@ enum engine_motion_model {
 	ENGINE_MOTION_QUADRATIC, /* with its change since the frame before */
 };
 
+/* Who finds discontinuities and vertices in motion and depth (docs/method.md, 12). The plan is the same. */
+enum engine_analysis {
+	ENGINE_ANALYSIS_AUTO = 0, /* whoever has the planes at hand: the CPU, as long as they come in its memory */
+	ENGINE_ANALYSIS_CPU,
+	ENGINE_ANALYSIS_GPU, /* GL, where it draws and has compute shaders, else the CPU */
+};
+
 enum engine_curve {
 	ENGINE_CURVE_SRGB = 0,
 	ENGINE_CURVE_GAMMA,
@@ -78,6 +85,7 @@ struct engine_params {
 	const char *method; /* name; NULL: "pursuit" */
 	enum engine_blur blur;
 	enum engine_motion_model motion_model;
+	enum engine_analysis analysis;
 	bool no_compensation;       /* E = c, B = mix */
 	uint32_t cell;              /* 4 to 64; 0: 8 */
 	uint32_t blur_level;        /* pyramid level of L, 1 to 6; 0: 2 */

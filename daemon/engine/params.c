@@ -47,6 +47,8 @@ int params_resolve(struct engine_params *params, struct error *error)
 	if (result == 0)
 		result = check_choice("motion_model", (unsigned)params->motion_model, ENGINE_MOTION_QUADRATIC, error);
 	if (result == 0)
+		result = check_choice("analysis", (unsigned)params->analysis, ENGINE_ANALYSIS_GPU, error);
+	if (result == 0)
 		result = check_choice("curve", (unsigned)params->curve, ENGINE_CURVE_GAMMA, error);
 	if (result == 0 && params->curve == ENGINE_CURVE_GAMMA)
 		result = check_number("gamma", &params->gamma, 2.2f, 1.0f, 5.0f, error);

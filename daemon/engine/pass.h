@@ -13,6 +13,10 @@ int pass_run(struct engine *engine, enum pass_id id, struct error *error);
 /* Depth and motion to the plan, on the CPU: the same for all executors. */
 extern const struct pass pass_analyse;
 
+/* What the plan is asked for, and what it takes besides the plan: the change of motion. */
+struct plan_params analyse_params(const struct engine *engine);
+int analyse_bend(struct engine *engine, const struct plan_params *params, struct error *error);
+
 /* For methods that work pixel by pixel, on the CPU too (pixel_state.h). */
 extern const struct pass pass_field, pass_paint;
 

@@ -3,9 +3,9 @@
 
 #include "daemon/engine/pass.h"
 
-static int run(struct engine *engine, struct error *error)
+struct plan_params analyse_params(const struct engine *engine)
 {
-	struct plan_params params = {
+	return (struct plan_params){
 		.cell = engine->params.cell,
 		.threshold_quarter = engine->params.threshold_quarter,
 		.display_width_mm = engine->params.display_width_mm,
@@ -15,10 +15,20 @@ static int run(struct engine *engine, struct error *error)
 		.unchanged = engine->damage.known && !engine->damage.count,
 		.pool = engine->executor->pool,
 	};
+}
+
+int analyse_bend(struct engine *engine, const struct plan_params *params, struct error *error)
+{
+	if (engine->params.motion_model != ENGINE_MOTION_QUADRATIC)
+		return 0;
+	return bend_begin(&engine->bend, engine->job.frame, &engine->plan, params, error);
+}
+
+static int run(struct engine *engine, struct error *error)
+{
+	const struct plan_params params = analyse_params(engine);
 	int result = plan_make(&engine->plan, engine->job.frame, &params, error);
-	if (result == 0 && engine->params.motion_model == ENGINE_MOTION_QUADRATIC)
-		result = bend_begin(&engine->bend, engine->job.frame, &engine->plan, &params, error);
-	return result;
+	return result < 0 ? result : analyse_bend(engine, &params, error);
 }
 
 const struct pass pass_analyse = {.on_cpu = true, .run = run};

@@ -28,6 +28,12 @@ enum plan_rest plan_rest_of(const struct frame *frame, const struct plan_interva
 	return intervals->real ? PLAN_MOVES : PLAN_NO_INTERVAL;
 }
 
+uint32_t plan_threshold(const struct plan_params *params)
+{
+	uint32_t threshold = params->threshold_quarter ? params->threshold_quarter : 2;
+	return threshold < 63 ? threshold : 63;
+}
+
 struct plan_depth plan_depth_of(const struct pursuit_frame_header *header)
 {
 	int index = plan_find_plane(header, PURSUIT_ROLE_DEPTH);

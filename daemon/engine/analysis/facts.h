@@ -18,6 +18,9 @@ struct plan_intervals plan_intervals_of(const struct pursuit_frame_header *heade
 /* Why nothing moves, as far as that is known without a look at the planes. */
 enum plan_rest plan_rest_of(const struct frame *frame, const struct plan_intervals *intervals);
 
+/* q_min in quarter pixels, 1 to 63. */
+uint32_t plan_threshold(const struct plan_params *params);
+
 /* How the frame's depth values become z. */
 struct plan_depth plan_depth_of(const struct pursuit_frame_header *header);
 

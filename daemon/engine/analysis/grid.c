@@ -372,3 +372,27 @@ void plan_grid_end(struct plan_grid *grid, uint32_t r)
 	if (r == grid->cells_y)
 		put_border(grid, grid->plan->height - 1, (float)grid->plan->height);
 }
+
+static void count_row(struct plan_grid *grid, uint32_t index)
+{
+	const struct plan_vertex *vertex = grid->plan->vertices + (size_t)index * grid->plan->columns;
+	struct plan_vertex_row *row = &grid->ring[index % 2];
+	struct plan_grid_counts *counts = &grid->counts;
+	float largest = sqrtf(grid->kernels->largest_square(row->ux, row->uy, grid->plan->columns));
+	counts->max_displacement = largest > counts->max_displacement ? largest : counts->max_displacement;
+	row->still = largest == 0.0f;
+	for (uint32_t i = 0; i < grid->plan->columns; i++) {
+		counts->snapped += vertex[i].snapped != 0.0f;
+		row->still &= vertex[i].snapped == 0.0f;
+	}
+}
+
+void plan_grid_take(struct plan_grid *grid)
+{
+	for (grid->row = 0; grid->row < grid->plan->rows; grid->row++) {
+		take_row(grid, grid->row);
+		count_row(grid, grid->row);
+		if (grid->row)
+			put_quads(grid);
+	}
+}

@@ -60,4 +60,7 @@ void plan_grid_end(struct plan_grid *grid, uint32_t r);
 /* The triangles above the first vertices of a band that begins with cell row r > 0, when both bands are done. */
 void plan_grid_join(struct plan_grid *grid, uint32_t r);
 
+/* Instead of all that: triangles and counts of vertices that are in the plan already. */
+void plan_grid_take(struct plan_grid *grid);
+
 #endif

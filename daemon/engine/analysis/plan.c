@@ -9,6 +9,7 @@
 
 #include "daemon/engine/analysis/bands.h"
 #include "daemon/engine/analysis/facts.h"
+#include "daemon/engine/analysis/job.h"
 
 static void reset(struct plan *plan, const struct frame *frame, const struct plan_params *params)
 {
@@ -46,28 +47,33 @@ static int prepare(struct plan *plan, struct plan_bands *bands, const struct fra
 	return plan_grid_reserve(plan);
 }
 
-static int out_of_memory(struct plan *plan, struct error *error)
+int plan_out_of_memory(struct plan *plan, struct error *error)
 {
 	plan->columns = plan->rows = 0;
 	return error_set(error, -ENOMEM, "no memory for the plan of a %u x %u picture with cells of %u pixels", plan->width,
 					 plan->height, plan->cell);
 }
 
-int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
-				   const struct plan_kernels *kernels, struct error *error)
+struct plan_intervals plan_begin(struct plan *plan, const struct frame *frame, const struct plan_params *params)
 {
 	struct plan_intervals intervals = plan_intervals_of(&frame->header, params->real_interval_ns);
 	reset(plan, frame, params);
 	plan->real_interval_s = (double)intervals.real * 1e-9;
 	plan->rest = params->unchanged ? PLAN_UNCHANGED : plan_rest_of(frame, &intervals);
+	return intervals;
+}
+
+int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
+				   const struct plan_kernels *kernels, struct error *error)
+{
+	struct plan_intervals intervals = plan_begin(plan, frame, params);
 	if (plan->rest != PLAN_MOVES)
 		return 0;
-	uint32_t threshold = params->threshold_quarter ? params->threshold_quarter : 2;
 	struct plan_bands bands = {
-		.plan = plan, .pool = params->pool, .kernels = kernels, .threshold = threshold < 63 ? threshold : 63};
+		.plan = plan, .pool = params->pool, .kernels = kernels, .threshold = plan_threshold(params)};
 	bands.scale = plan_scale_make(plan->real_interval_s, (double)intervals.motion * 1e-9, plan->width, params);
 	if (prepare(plan, &bands, frame))
-		return out_of_memory(plan, error);
+		return plan_out_of_memory(plan, error);
 	plan_bands_run(&bands);
 	return 0;
 }

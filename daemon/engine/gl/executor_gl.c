@@ -49,6 +49,8 @@ static void delete_objects(struct executor_gl *executor)
 	gl->DeleteVertexArrays(1, &executor->tile_array);
 	gl->DeleteBuffers(1, &executor->tile_vertices);
 	warp_buffers_finish(&executor->buffers, gl);
+	stream_finish(&executor->stream, gl);
+	analysis_finish(&executor->analysis, gl);
 	program_cache_finish(&executor->programs, gl);
 	timer_finish(&executor->timer, gl);
 }
@@ -61,8 +63,8 @@ static void destroy(struct executor **executor)
 	context_enter(gone->context, &error);
 	delete_objects(gone);
 	context_destroy(&gone->context);
-	free(gone->staging);
 	free(gone->tile_numbers);
+	free(gone->row);
 	free(gone);
 	*executor = NULL;
 }
@@ -114,7 +116,7 @@ static const char *time_source(const struct executor *executor)
 static const struct executor_ops ops = {
 	.passes =
 		{
-			[PASS_ANALYSE] = &pass_analyse,
+			[PASS_ANALYSE] = &gl_pass_analyse,
 			[PASS_FIELD] = &pass_field,
 			[PASS_PAINT] = &pass_paint,
 			[PASS_PUT] = &gl_pass_put,

@@ -5,8 +5,10 @@
 #ifndef PURSUIT_ENGINE_GL_EXECUTOR_GL_H
 #define PURSUIT_ENGINE_GL_EXECUTOR_GL_H
 
+#include "daemon/engine/gl/analysis.h"
 #include "daemon/engine/gl/context.h"
 #include "daemon/engine/gl/program.h"
+#include "daemon/engine/gl/stream.h"
 #include "daemon/engine/gl/target.h"
 #include "daemon/engine/gl/timer.h"
 #include "daemon/engine/gl/warp_buffers.h"
@@ -20,8 +22,10 @@ struct executor_gl {
 	struct target pictures[PICTURE_COUNT];
 	struct target levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
 	struct warp_buffers buffers;
-	uint8_t *staging; /* a block of rows on its way up */
-	size_t staging_bytes;
+	struct stream stream;
+	struct analysis analysis;
+	uint8_t *row; /* of the UI */
+	size_t row_bytes;
 	GLuint tile_array, tile_vertices; /* rectangles to fill */
 	float *tile_numbers;              /* on their way there */
 	size_t tile_capacity;
@@ -47,7 +51,7 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
 	return &gl_of(engine)->pictures[id];
 }
 
-extern const struct pass gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_put, gl_pass_warp, gl_pass_ui,
-	gl_pass_read, gl_pass_copy;
+extern const struct pass gl_pass_analyse, gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_put,
+	gl_pass_warp, gl_pass_ui, gl_pass_read, gl_pass_copy;
 
 #endif

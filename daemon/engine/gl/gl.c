@@ -48,6 +48,7 @@ static void learn_limits(struct gl *gl)
 	gl->pixel_format = gl->gles ? GL_RGBA : GL_BGRA;
 	gl->pixel_type = gl->gles ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT_8_8_8_8_REV;
 	bool functions = gl->GenQueries && gl->DeleteQueries && gl->BeginQuery && gl->EndQuery && gl->GetQueryObjectui64v;
+	gl->compute = gl->DispatchCompute && gl->MemoryBarrier && gl->version >= (gl->gles ? 31 : 43);
 	gl->timer_queries = functions && (!gl->gles || gl_has_extension(gl, "GL_EXT_disjoint_timer_query"));
 }
 

@@ -20,6 +20,7 @@
 	X(AttachShader, ATTACHSHADER)                       \
 	X(BindAttribLocation, BINDATTRIBLOCATION)           \
 	X(BindBuffer, BINDBUFFER)                           \
+	X(BindBufferBase, BINDBUFFERBASE)                   \
 	X(BindFramebuffer, BINDFRAMEBUFFER)                 \
 	X(BindRenderbuffer, BINDRENDERBUFFER)               \
 	X(BindTexture, BINDTEXTURE)                         \
@@ -72,6 +73,7 @@
 	X(GetStringi, GETSTRINGI)                           \
 	X(GetUniformLocation, GETUNIFORMLOCATION)           \
 	X(LinkProgram, LINKPROGRAM)                         \
+	X(MapBufferRange, MAPBUFFERRANGE)                   \
 	X(PixelStorei, PIXELSTOREI)                         \
 	X(ReadBuffer, READBUFFER)                           \
 	X(ReadPixels, READPIXELS)                           \
@@ -84,6 +86,7 @@
 	X(Uniform1f, UNIFORM1F)                             \
 	X(Uniform1i, UNIFORM1I)                             \
 	X(Uniform2f, UNIFORM2F)                             \
+	X(UnmapBuffer, UNMAPBUFFER)                         \
 	X(UseProgram, USEPROGRAM)                           \
 	X(VertexAttribPointer, VERTEXATTRIBPOINTER)         \
 	X(Viewport, VIEWPORT)
@@ -95,7 +98,9 @@
 	X(DeleteQueries, DELETEQUERIES)                   \
 	X(BeginQuery, BEGINQUERY)                         \
 	X(EndQuery, ENDQUERY)                             \
-	X(GetQueryObjectui64v, GETQUERYOBJECTUI64V)
+	X(GetQueryObjectui64v, GETQUERYOBJECTUI64V)       \
+	X(DispatchCompute, DISPATCHCOMPUTE)               \
+	X(MemoryBarrier, MEMORYBARRIER)
 
 struct gl {
 #define X(name, type) PFNGL##type##PROC name;
@@ -106,6 +111,7 @@ struct gl {
 	int version;  /* 10 x major + minor */
 	int max_size; /* of textures and viewports, pixels */
 	bool timer_queries;
+	bool compute; /* shaders of 4.3 core or ES 3.1 that write to buffers */
 	/* How 4 bytes a pixel go in and out: BGRA, or on GLES the same bytes taken for RGBA. */
 	GLenum pixel_format, pixel_type;
 };

@@ -10,13 +10,14 @@
 #include "shaders/shaders.h"
 
 static const struct {
-	const char *name, *vertex, *fragment;
+	const char *name, *vertex, *fragment, *compute; /* the last alone, or the two others */
 } sources[PROGRAM_KIND_COUNT] = {
 	[PROGRAM_PYRAMID] = {"pyramid", shader_tiles_vert, shader_pyramid_frag},
 	[PROGRAM_LOW] = {"low", shader_tiles_vert, shader_low_frag},
 	[PROGRAM_COMPENSATE] = {"compensate", shader_grid_vert, shader_compensate_frag},
 	[PROGRAM_WARP] = {"warp", shader_grid_vert, shader_warp_frag},
 	[PROGRAM_UI] = {"ui", shader_rectangle_vert, shader_ui_frag},
+	[PROGRAM_ANALYSE] = {"analyse", .compute = shader_analyse_comp},
 };
 
 static const char *const variant_defines[] = {
@@ -29,8 +30,14 @@ static const char *const variant_defines[] = {
 static const char *header(const struct gl *gl)
 {
 	if (gl->gles)
-		return "#version 310 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n";
+		return "#version 310 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n"
+			   "precision highp usampler2D;\n";
 	return gl->version >= 43 ? "#version 430 core\n" : "#version 330 core\n";
+}
+
+static const char *stage_name(GLenum stage)
+{
+	return stage == GL_VERTEX_SHADER ? "vertex" : stage == GL_FRAGMENT_SHADER ? "fragment" : "compute";
 }
 
 static GLuint compile(const struct gl *gl, GLenum stage, const char *name, const char *body, unsigned variant,
@@ -52,17 +59,18 @@ static GLuint compile(const struct gl *gl, GLenum stage, const char *name, const
 		return shader;
 	char log[400] = "";
 	gl->GetShaderInfoLog(shader, sizeof(log), NULL, log);
-	error_set(error, -ENOTSUP, "shader %s (%s, variant %u) is refused: %s", name,
-			  stage == GL_VERTEX_SHADER ? "vertex" : "fragment", variant, log);
+	error_set(error, -ENOTSUP, "shader %s (%s, variant %u) is refused: %s", name, stage_name(stage), variant, log);
 	gl->DeleteShader(shader);
 	return 0;
 }
 
-static GLuint link_program(const struct gl *gl, GLuint vertex, GLuint fragment, const char *name, struct error *error)
+/* `second`: 0 for a program of one shader. */
+static GLuint link_program(const struct gl *gl, GLuint first, GLuint second, const char *name, struct error *error)
 {
 	GLuint id = gl->CreateProgram();
-	gl->AttachShader(id, vertex);
-	gl->AttachShader(id, fragment);
+	gl->AttachShader(id, first);
+	if (second)
+		gl->AttachShader(id, second);
 	gl->BindAttribLocation(id, ATTRIBUTE_POSITION, "a_position");
 	gl->BindAttribLocation(id, ATTRIBUTE_DISPLACEMENT, "a_displacement");
 	gl->BindAttribLocation(id, ATTRIBUTE_DEPTH, "a_depth");
@@ -78,8 +86,19 @@ static GLuint link_program(const struct gl *gl, GLuint vertex, GLuint fragment, 
 	return 0;
 }
 
+static GLuint build_compute(const struct gl *gl, enum program_kind kind, struct error *error)
+{
+	const char *name = sources[kind].name;
+	GLuint shader = compile(gl, GL_COMPUTE_SHADER, name, sources[kind].compute, 0, error);
+	GLuint id = shader ? link_program(gl, shader, 0, name, error) : 0;
+	gl->DeleteShader(shader);
+	return id;
+}
+
 static GLuint build(const struct gl *gl, enum program_kind kind, unsigned variant, struct error *error)
 {
+	if (sources[kind].compute)
+		return build_compute(gl, kind, error);
 	const char *name = sources[kind].name;
 	const char *vertex_source = variant & VARIANT_WEIGHT_ONE ? shader_rectangle_vert : sources[kind].vertex;
 	GLuint vertex = compile(gl, GL_VERTEX_SHADER, name, vertex_source, variant, error);

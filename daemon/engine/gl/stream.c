@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/gl/stream.h"
+
+#include <errno.h>
+
+/* Few calls a picture, and a CPU renderer finds it in a core's cache still. */
+#define BLOCK_BYTES ((size_t)512 * 1024)
+
+/* Longer than any GPU takes for a block. */
+#define WAIT_NS 1000000000u
+
+void stream_finish(struct stream *stream, const struct gl *gl)
+{
+	for (uint32_t i = 0; i < STREAM_BLOCKS; i++) {
+		if (stream->blocks[i].busy)
+			gl->DeleteSync(stream->blocks[i].busy);
+		gl->DeleteBuffers(1, &stream->blocks[i].buffer);
+	}
+	*stream = (struct stream){0};
+}
+
+uint32_t stream_rows(size_t row_bytes)
+{
+	return row_bytes < BLOCK_BYTES ? (uint32_t)(BLOCK_BYTES / row_bytes) : 1;
+}
+
+static void wait_for(struct stream *stream, struct stream_block *block, const struct gl *gl)
+{
+	if (!block->busy)
+		return;
+	if (gl->ClientWaitSync(block->busy, 0, 0) == GL_TIMEOUT_EXPIRED) {
+		stream->waits++;
+		gl->ClientWaitSync(block->busy, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS);
+	}
+	gl->DeleteSync(block->busy);
+	block->busy = NULL;
+}
+
+uint8_t *stream_begin(struct stream *stream, const struct gl *gl, size_t bytes, struct error *error)
+{
+	struct stream_block *block = &stream->blocks[stream->next];
+	const GLbitfield access = GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_UNSYNCHRONIZED_BIT;
+	wait_for(stream, block, gl);
+	if (!block->buffer)
+		gl->GenBuffers(1, &block->buffer);
+	gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, block->buffer);
+	if (bytes > block->bytes) {
+		block->bytes = bytes > BLOCK_BYTES ? bytes : BLOCK_BYTES;
+		gl->BufferData(GL_PIXEL_UNPACK_BUFFER, (GLsizeiptr)block->bytes, NULL, GL_STREAM_DRAW);
+	}
+	uint8_t *data = gl->MapBufferRange(GL_PIXEL_UNPACK_BUFFER, 0, (GLsizeiptr)bytes, access);
+	if (data)
+		return data;
+	gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+	block->bytes = 0;
+	error_set(error, -ENOMEM, "the renderer has no room for a block of rows of %zu bytes", bytes);
+	return NULL;
+}
+
+int stream_send(struct stream *stream, const struct gl *gl, const struct stream_target *target, struct error *error)
+{
+	struct stream_block *block = &stream->blocks[stream->next];
+	bool good = gl->UnmapBuffer(GL_PIXEL_UNPACK_BUFFER);
+	if (good) {
+		gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, target->y, target->width, target->rows, target->format, target->type,
+						  NULL);
+		block->busy = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+		stream->next = (stream->next + 1) % STREAM_BLOCKS;
+	}
+	gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+	return good ? 0 : error_set(error, -EIO, "the renderer lost a block of rows on its way up");
+}
+
+uint64_t stream_bytes(const struct stream *stream)
+{
+	uint64_t bytes = 0;
+	for (uint32_t i = 0; i < STREAM_BLOCKS; i++)
+		bytes += stream->blocks[i].bytes;
+	return bytes;
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Pixels on their way up to textures, block by block, in GL buffers that take
+ * turns: the copy into the texture happens behind the caller's back while the
+ * next block is filled. The caller fills them, so that nothing of GL's reads
+ * memory that a client may change.
+ */
+#ifndef PURSUIT_ENGINE_GL_STREAM_H
+#define PURSUIT_ENGINE_GL_STREAM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "daemon/engine/gl/gl.h"
+#include "daemon/error.h"
+
+#define STREAM_BLOCKS 4u
+
+struct stream {
+	struct stream_block {
+		GLuint buffer;
+		size_t bytes;
+		GLsync busy; /* the copy out of it; NULL: none */
+	} blocks[STREAM_BLOCKS];
+	uint32_t next;
+	uint64_t waits; /* blocks that were still being read when it was their turn */
+};
+
+/* Rows of the texture that is bound. */
+struct stream_target {
+	GLint y;
+	GLsizei width, rows;
+	GLenum format, type;
+};
+
+/* A zeroed stream is ready for use. */
+void stream_finish(struct stream *stream, const struct gl *gl);
+
+/* How many rows of that many bytes a block takes, at least 1. */
+uint32_t stream_rows(size_t row_bytes);
+
+/* Memory for `bytes`, to be written and not read; NULL with a sentence. stream_send() follows. */
+uint8_t *stream_begin(struct stream *stream, const struct gl *gl, size_t bytes, struct error *error);
+
+/* Sends it. 0, or -EIO with a sentence: GL has lost what was written. */
+int stream_send(struct stream *stream, const struct gl *gl, const struct stream_target *target, struct error *error);
+
+/* Bytes that it holds in GL buffers. */
+uint64_t stream_bytes(const struct stream *stream);
+
+#endif
