@@ -248,6 +248,7 @@ static int open_stream(struct client *client, struct refusal *refusal)
 	const struct stream_params params = {
 		.client_id = client->id,
 		.stream_id = open->stream_id,
+		.opened = client->opened,
 		.client_name = client->name,
 		.slot_count = open->slot_count,
 		.slot_bytes = open->slot_bytes,
@@ -269,6 +270,7 @@ static int open_stream(struct client *client, struct refusal *refusal)
 	struct stream *stream = stream_create(&params, client->packet->fds[0], client->packet->fds[1], refusal);
 	if (!stream)
 		return -EINVAL;
+	client->opened++;
 	const int result = enter_stream(client, entry, stream, refusal);
 	if (result < 0)
 		return result;

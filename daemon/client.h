@@ -40,6 +40,7 @@ struct client {
 	char name[64];
 	struct client_stream streams[PURSUIT_MAX_STREAMS_PER_CLIENT];
 	uint64_t stream_bytes; /* mapped, of all streams */
+	uint32_t opened;       /* streams, ever */
 	struct message_rate {
 		uint64_t second;
 		uint32_t count;

@@ -50,6 +50,15 @@ static void on_lost(void *data, const char *sentence)
 	wake(display);
 }
 
+/* On main: what is made next is another one. */
+static void on_failed(void *data)
+{
+	struct display *display = data;
+	pthread_mutex_lock(&display->lock);
+	display->lost = false;
+	pthread_mutex_unlock(&display->lock);
+}
+
 void display_let_go(struct display *display)
 {
 	pthread_mutex_lock(&display->lock);
@@ -96,6 +105,7 @@ static struct presenter *make(struct display *display, struct error *error)
 					.device = settings->kms_device},
 		.flip = on_flip,
 		.lost = on_lost,
+		.failed = on_failed,
 		.key = on_key,
 		.data = display,
 	};

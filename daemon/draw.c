@@ -238,6 +238,8 @@ static bool take(struct render *render, uint64_t now_ns)
 									  .interval_ns = header->real_interval_ns,
 									  .intake_ns = render->frame.intake_ns,
 									  .ready_ns = now_ns + render_real_cost(render)};
+	render->stream_number = render->frame.stream;
+	render->orphan = false;
 	render->owner.record(render->owner.data, &render->frame);
 	pacer_add_frame(&render->pacer, &frame);
 	render->group++;
@@ -330,6 +332,7 @@ static void settle_real(struct render *render, const struct pacer_decision *deci
 	render->still = left_out(report, "extrapolation");
 	render->boosted = decision->n > 1 && ran(report, "compensate") && !left_out(report, "boost");
 	render->front_plain = !render->boosted && decision->phase == 0.0;
+	render->front_black = false;
 	if (frame)
 		frame->boosted = render->boosted;
 	give_hint(render, decision);
@@ -430,14 +433,19 @@ void draw_empty(struct render *render, uint64_t vblank)
 {
 	const struct presenter_impl *impl = render->presenter->impl;
 	struct presenter_image image;
+	uint32_t width = EMPTY_WIDTH, height = EMPTY_HEIGHT;
+	if (render->begun)
+		engine_get_size(render->engine, &width, &height);
 	/* A file of what is shown has the size of the first picture. */
-	if (render->tee || impl->acquire(render->presenter, EMPTY_WIDTH, EMPTY_HEIGHT, &image) < 0)
+	if ((render->tee && !render->begun) || impl->acquire(render->presenter, width, height, &image) < 0)
 		return;
 	image.holds = 0;
 	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
 	view_draw(render, &image);
 	if (queue(render, &image, vblank, STATS_REPEAT, 0.0) < 0)
 		impl->release(render->presenter, &image);
+	else
+		render->front_black = true;
 }
 
 void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank)
@@ -464,10 +472,10 @@ void draw_plain(struct render *render, uint64_t vblank)
 		return;
 	add_cost(render, &render->plain_cost, start_ns);
 	if (vblank != 0) {
-		if (queue(render, &image, vblank, STATS_REPEAT, 0.0) < 0)
+		render->front_plain = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
+		render->front_black &= !render->front_plain;
+		if (!render->front_plain)
 			render->presenter->impl->release(render->presenter, &image);
-		else
-			render->front_plain = true;
 		return;
 	}
 	const struct showing_picture picture = {.serial = ++render->serial,

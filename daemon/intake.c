@@ -135,6 +135,7 @@ struct stream *stream_create(const struct stream_params *params, int control_fd,
 	atomic_init(&stream->references, 1);
 	stream->client_id = params->client_id;
 	stream->stream_id = params->stream_id;
+	stream->number = (params->client_id + 1) << 32 | params->opened;
 	snprintf(stream->client_name, sizeof(stream->client_name), "%s", params->client_name);
 	stream->wake_fd = -1;
 	stream->slot_count = params->slot_count;
@@ -235,7 +236,7 @@ int stream_take(struct stream *stream, uint64_t now_ns, struct frame *frame, str
 	for (uint32_t i = 0; i < frame->header.plane_count; i++)
 		frame->planes[i] = stream->planes + slot * stream->slot_bytes + frame->header.planes[i].offset;
 	frame->volatile_memory = true;
-	frame->stream = (stream->client_id + 1) << 32 | (uint32_t)stream->stream_id;
+	frame->stream = stream->number;
 	frame->intake_ns = intake_time(stream, frame->header.submit_ns, now_ns);
 	count_frame(stream, &frame->header);
 	return 1;

@@ -38,7 +38,8 @@ struct stream_counters {
 struct stream {
 	atomic_uint references;
 	uint64_t client_id; /* the server's number of the connection */
-	uint64_t stream_id; /* the client's */
+	uint64_t stream_id; /* the client's, who may use one again */
+	uint64_t number;    /* ours, never 0, never used again: what frames say that they are of */
 	char client_name[64];
 	int wake_fd;              /* eventfd; the client writes, nobody reads */
 	_Atomic uint64_t wake_ns; /* when main saw the last wake-up */
@@ -59,6 +60,7 @@ struct stream {
 struct stream_params {
 	uint64_t client_id;
 	uint64_t stream_id;
+	uint32_t opened; /* streams that this client has opened before, whether or not they are open */
 	const char *client_name;
 	uint32_t slot_count;
 	uint64_t slot_bytes;

@@ -22,7 +22,7 @@ static enum reader reader_of(const struct option_row *row)
 	};
 	if (strcmp(row->name, "context") == 0 || strcmp(row->name, "gles") == 0 || strcmp(row->name, "threads") == 0)
 		return READER_START;
-	if (row->group == OPTION_ENGINE || strcmp(row->name, "governor") == 0)
+	if (row->group == OPTION_ENGINE || strcmp(row->name, "governor") == 0 || strcmp(row->name, "on-client-exit") == 0)
 		return READER_RENDER;
 	for (size_t i = 0; i < sizeof(mains) / sizeof(mains[0]); i++)
 		if (strcmp(mains[i], row->name) == 0)

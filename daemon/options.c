@@ -17,6 +17,7 @@ static const char *const blur_choices[] = {"doubtful", "everywhere", "off", NULL
 static const char *const pattern_choices[] = {"toggle",      "pulse",   "pulse-real", "level-real",
 											  "three-lines", "counter", "sequence",   NULL};
 static const char *const governor_choices[] = {"auto", "off", NULL};
+static const char *const exit_choices[] = {"keep", "black", NULL};
 static const char *const level_choices[] = {"low", "high", NULL};
 static const char *const final_choices[] = {"low", "high", "keep", NULL};
 static const char *const patch_choices[] = {"off", "alternate", "sequence", NULL};
@@ -94,6 +95,8 @@ static const struct option_row rows[] = {
 		 "lost, the list is tried again."),
 	RATE(refresh, "refresh", OPTION_OUTPUT, "120", 1, 1000,
 		 "Display rate as 120, 119.88 or 120000/1001; a presenter with a display of its own may have another."),
+	CHOICE(on_client_exit, "on-client-exit", OPTION_OUTPUT, "keep", exit_choices,
+		   "When the client that is shown closes its stream, ends or is killed: its last picture stays, or black."),
 	TEXT(tee, "tee", OPTION_OUTPUT, "",
 		 "Record what is shown, each vblank once, into this YUV4MPEG2 file, and the times beside it in FILE.csv."),
 	TEXT(monitor, "monitor", OPTION_OUTPUT, "",

@@ -41,7 +41,8 @@ struct settings {
 	char present[128];          /* comma-separated list of presenters, tried in turn */
 	uint64_t refresh_numerator; /* --refresh 120, 119.88, 120000/1001 */
 	uint64_t refresh_denominator;
-	char monitor[64]; /* "": the primary one */
+	uint32_t on_client_exit; /* enum on_client_exit */
+	char monitor[64];        /* "": the primary one */
 	bool fullscreen;
 	uint32_t window_width; /* 0: as the first picture */
 	uint32_t window_height;
@@ -63,6 +64,12 @@ struct settings {
 	char allow_groups[256];
 	bool seccomp;
 	uint32_t log_level; /* 0 error, 1 warning, 2 info, 3 debug */
+};
+
+/* What stays when the client that is shown has gone. */
+enum on_client_exit {
+	ON_CLIENT_EXIT_KEEP, /* its last picture */
+	ON_CLIENT_EXIT_BLACK,
 };
 
 enum option_type {

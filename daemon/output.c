@@ -177,7 +177,7 @@ static void adopt_streams(struct output *output, struct stream *const *streams, 
 	for (uint32_t i = 0; i < count; i++)
 		output->own[i] = streams[i];
 	output->own_count = count;
-	render_set_stream(&output->render, count ? streams[count - 1] : NULL);
+	render_set_streams(&output->render, streams, count);
 	for (uint32_t i = 0; i < old_count; i++)
 		stream_release(&old[i]);
 }

@@ -46,7 +46,7 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	showing_init(&render->showing, render->stats);
 	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&render->grid);
 	start_pacer(render);
-	render->begun = render->report_due = render->standby_done = render->front_plain = false;
+	render->begun = render->report_due = render->standby_done = render->front_plain = render->front_black = false;
 	render->hold_until_ns = render->take_again_ns = 0;
 	render->real_vblank = render->next_vblank = 0;
 	render->pause_vblanks = 0;
@@ -67,11 +67,25 @@ bool render_follow_grid(struct render *render)
 	return true;
 }
 
-void render_set_stream(struct render *render, struct stream *stream)
+/* The picture that stays is to be black: there was none, or its client has gone. */
+static bool wants_black(const struct render *render)
 {
-	if (stream == render->stream)
+	return render->group == 0 || (render->orphan && render->settings->on_client_exit == ON_CLIENT_EXIT_BLACK);
+}
+
+void render_set_streams(struct render *render, struct stream *const *streams, uint32_t count)
+{
+	struct stream *shown = count ? streams[count - 1] : NULL;
+	bool found = false;
+	for (uint32_t i = 0; i < count; i++)
+		found |= streams[i]->number == render->stream_number;
+	if (!found && render->group > 0 && !render->orphan) {
+		render->orphan = true;
+		render->redraw |= wants_black(render);
+	}
+	if (shown == render->stream)
 		return;
-	render->stream = stream;
+	render->stream = shown;
 	start_pacer(render);
 }
 
@@ -245,7 +259,9 @@ static void pause_once(struct render *render)
 	if (render->pause_vblanks == PLAIN_AFTER) {
 		close_all_frames(render);
 		draw_count_report(render);
-		if (!render->front_plain && render->begun && render->engine)
+		if (wants_black(render) && !render->front_black)
+			draw_empty(render, vblank);
+		else if (!wants_black(render) && !render->front_plain && render->begun && render->engine)
 			draw_plain(render, vblank);
 	}
 	if (render->pause_vblanks >= SLEEP_AFTER) {
@@ -260,16 +276,16 @@ static void draw_still_anew(struct render *render, uint64_t now_ns)
 {
 	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + estimate(render, &render->plain_cost));
 	render->redraw = false;
-	if ((!render->begun && render->group > 0) || !render->engine)
+	if ((!wants_black(render) && !render->begun) || !render->engine)
 		return;
 	if (vblank > render->next_vblank)
 		render->next_vblank = vblank;
 	render->pause_vblanks = PLAIN_AFTER;
 	render->paused = false;
-	if (render->begun)
-		draw_plain(render, render->next_vblank);
-	else
+	if (wants_black(render))
 		draw_empty(render, render->next_vblank);
+	else
+		draw_plain(render, render->next_vblank);
 	showing_plan(&render->showing, render->next_vblank++, SHOWING_PAUSE);
 }
 

@@ -67,7 +67,10 @@ struct render {
 	bool boosted;           /* it gives light that in-betweens take away */
 	bool still;             /* its in-betweens look like itself */
 	bool standby_done;
-	bool front_plain; /* the picture queued last may stay for good */
+	bool front_plain;       /* the picture queued last may stay for good */
+	bool front_black;       /* it is black: nobody's */
+	bool orphan;            /* the stream of the frame begun last is gone */
+	uint64_t stream_number; /* of the frame taken last */
 	uint64_t group, serial;
 	uint32_t n;
 	uint64_t real_vblank;   /* of its first showing */
@@ -96,8 +99,11 @@ void render_set_settings(struct render *render, const struct settings *settings)
 /* Takes over the presenter's grid as it is now. Has it changed? */
 bool render_follow_grid(struct render *render);
 
-/* Shows this stream from now on (NULL: none; the picture stays). */
-void render_set_stream(struct render *render, struct stream *stream);
+/*
+ * All streams that there are; the last one is shown from now on (none: the picture stays, or black). Others of before
+ * are not touched any more.
+ */
+void render_set_streams(struct render *render, struct stream *const *streams, uint32_t count);
 /* A stream that is not shown: its frames are taken and answered. */
 void render_skip_frames(struct render *render, struct stream *stream);
 /* A vblank is over. */
@@ -124,7 +130,7 @@ void draw_real(struct render *render, uint64_t now_ns);
 void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank);
 /* Draws the plain picture, as standby or, for a vblank > 0, to be shown there. */
 void draw_plain(struct render *render, uint64_t vblank);
-/* Queues a black picture with what is drawn over it: before the first frame. */
+/* Queues a black picture with what is drawn over it: before the first frame, and when its client has gone. */
 void draw_empty(struct render *render, uint64_t vblank);
 /* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
 void draw_count_report(struct render *render);

@@ -312,11 +312,17 @@ void server_reply(struct server *server, uint64_t client_id, uint32_t serial, in
 {
 	struct client *client = find_client(server, client_id);
 	const size_t most = PURSUIT_WIRE_MAX_PACKET - sizeof(struct pursuit_message_control);
+	char too_long[128];
 	size_t length = strlen(text);
 	if (!client)
 		return;
-	if (length > most)
-		length = most;
+	if (length > most) {
+		snprintf(too_long, sizeof(too_long), "the answer has %zu bytes, more than the %zu that a packet holds", length,
+				 most);
+		text = too_long;
+		length = strlen(text);
+		status = EMSGSIZE;
+	}
 	const size_t bytes = sizeof(struct pursuit_message_control) + length;
 	uint8_t *packet = malloc(bytes);
 	if (!packet)

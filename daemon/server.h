@@ -48,7 +48,10 @@ void server_destroy(struct server **server);
 
 const char *server_path(const struct server *server);
 
-/* Answers a CONTROL request; a client that is gone meanwhile is no error. Cut to what fits a packet. */
+/*
+ * Answers a CONTROL request; a client that is gone meanwhile is no error. What does not fit a packet is
+ * answered with EMSGSIZE and a sentence, never cut.
+ */
 void server_reply(struct server *server, uint64_t client_id, uint32_t serial, int status, const char *text);
 
 /* Tells the client that is shown of a key. False: it does not want to know, or there is none. */

@@ -36,6 +36,19 @@ static void read_render(struct lab *lab)
 	}
 }
 
+/* Another presenter counts its vblanks anew: flips of the one before that were not seen up to here never come. */
+static void forget_unseen(struct lab *lab)
+{
+	const struct queue_message *message;
+	while ((message = queue_front(&lab->render))) {
+		if (message->kind == QUEUE_PICTURE)
+			lab->pictures[message->picture.serial % LAB_PICTURES] = message->picture;
+		else if (message->points.vblank <= lab->last_vblank)
+			return;
+		queue_pop(&lab->render);
+	}
+}
+
 /* What came on display, and its patch. */
 static uint8_t look_up(struct lab *lab, const struct presenter_flip *flip)
 {
@@ -100,6 +113,8 @@ static void read_flips(struct lab *lab)
 		const struct queue_message flip = *message;
 		queue_pop(&lab->flips);
 		read_render(lab);
+		if (flip.flip.vblank < lab->last_vblank)
+			forget_unseen(lab);
 		handle_flip(lab, &flip.flip, flip.event_ns);
 	}
 	read_render(lab);

@@ -90,18 +90,36 @@ static int start(struct drawer *drawer, struct error *error)
 	return result;
 }
 
+static void say_started(struct drawer *drawer, int result, const struct error *error)
+{
+	pthread_mutex_lock(&drawer->lock);
+	drawer->started = true;
+	drawer->start_result = result;
+	drawer->start_error = *error;
+	pthread_cond_signal(&drawer->done);
+	pthread_mutex_unlock(&drawer->lock);
+}
+
+/* The window ends the thread when the display server goes away (window.c). */
+static void on_exit_in_start(void *data)
+{
+	struct error error;
+	error_set(&error, -EIO, "glfw: the display server went away while the window was made");
+	say_started(data, -EIO, &error);
+}
+
 static void *run(void *data)
 {
 	struct drawer *drawer = data;
 	struct error error = {""};
+	int result;
 	pthread_setname_np(pthread_self(), "pursuit-swap");
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
-	const int result = start(drawer, &error);
+	pthread_cleanup_push(on_exit_in_start, drawer);
+	result = start(drawer, &error);
+	pthread_cleanup_pop(0);
+	say_started(drawer, result, &error);
 	pthread_mutex_lock(&drawer->lock);
-	drawer->started = true;
-	drawer->start_result = result;
-	drawer->start_error = error;
-	pthread_cond_signal(&drawer->done);
 	while (!drawer->stop && result == 0) {
 		if (!drawer->under_way) {
 			pthread_cond_wait(&drawer->wake, &drawer->lock);
@@ -152,16 +170,24 @@ struct drawer *drawer_create(struct window *window, struct clock *clock, struct 
 		free_drawer(drawer);
 		return NULL;
 	}
+	return drawer;
+}
+
+int drawer_wait_for_start(struct drawer *drawer, struct error *error)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	const struct timespec until = timespec_of((uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec + DRAWER_START_NS);
 	pthread_mutex_lock(&drawer->lock);
-	while (!drawer->started)
-		pthread_cond_wait(&drawer->done, &drawer->lock);
+	while (!drawer->started && pthread_cond_timedwait(&drawer->done, &drawer->lock, &until) != ETIMEDOUT)
+		;
+	int result = drawer->start_result;
+	if (!drawer->started)
+		result = error_set(error, -ETIMEDOUT, "glfw: the display server does not answer");
+	else if (result < 0)
+		*error = drawer->start_error;
 	pthread_mutex_unlock(&drawer->lock);
-	if (drawer->start_result == 0)
-		return drawer;
-	*error = drawer->start_error;
-	pthread_join(drawer->thread, NULL);
-	free_drawer(drawer);
-	return NULL;
+	return result;
 }
 
 bool drawer_destroy(struct drawer **drawer)

@@ -21,12 +21,19 @@ struct drawer_swap {
 };
 
 #define DRAWER_SWAPS 16u
+#define DRAWER_START_NS UINT64_C(5000000000)
 
 struct drawer;
 
-/* Takes the window's context to its thread. NULL with a sentence. */
+/* Starts the thread, which takes the window's context. NULL with a sentence. */
 struct drawer *drawer_create(struct window *window, struct clock *clock, struct error *error);
-/* False: the thread hangs in a swap. It and the window must be left alone for ever; *drawer is cleared anyway. */
+/*
+ * Waits until it has, at most DRAWER_START_NS. 0, or a negative errno with a sentence, among them -EIO if the display
+ * server went away meanwhile and -ETIMEDOUT if it does not answer. Before anything is ordered.
+ */
+int drawer_wait_for_start(struct drawer *drawer, struct error *error);
+/* False: the thread hangs in its start or in a swap. It and the window must be left alone for ever; *drawer is cleared
+ * anyway. */
 bool drawer_destroy(struct drawer **drawer);
 
 /*

@@ -16,6 +16,7 @@
  * for, and pictures are drawn at their times.
  */
 #include <errno.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -41,6 +42,7 @@ struct glfw {
 	struct window_state state;
 	uint32_t fit_width, fit_height; /* of the first picture, until main has seen it */
 	bool fitted;
+	atomic_bool left_behind; /* its user knows it no more */
 
 	/* the keeper's own */
 	struct drawer *drawer;
@@ -304,12 +306,14 @@ static void on_changed(void *data, const struct window_state *state)
 static void on_lost(void *data, const char *sentence)
 {
 	struct glfw *self = data;
-	self->pictures.params.lost(self->pictures.params.data, sentence);
+	if (!atomic_load(&self->left_behind))
+		self->pictures.params.lost(self->pictures.params.data, sentence);
 }
 
 static void free_glfw(struct glfw *self)
 {
 	if (!drawer_destroy(&self->drawer)) {
+		atomic_store(&self->left_behind, true);
 		/* The thread that hangs in it goes on with the window, its events and the picture when it comes back. */
 		log_warning(self->pictures.params.log, "glfw: a swap hangs; its window is left behind");
 		return;
@@ -335,7 +339,7 @@ static int open_all(struct glfw *self, struct error *error)
 	if (!self->window)
 		return -ENODEV;
 	self->drawer = drawer_create(self->window, params->clock, error);
-	if (!self->drawer)
+	if (!self->drawer || drawer_wait_for_start(self->drawer, error) < 0)
 		return -EIO;
 	const int result = pthread_create(&self->keeper, NULL, run, self);
 	return result == 0 ? 0 : error_set(error, -result, "glfw: cannot start a thread: %s", strerror(result));

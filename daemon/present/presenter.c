@@ -80,6 +80,8 @@ struct presenter *presenter_create(const char *list, const struct presenter_para
 			return presenter;
 		if (!is_built(name))
 			explain_missing(name, error);
+		else if (params->failed)
+			params->failed(params->data);
 		log_warning(params->log, "%s", error->text);
 	}
 	return NULL;

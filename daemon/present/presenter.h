@@ -109,6 +109,8 @@ struct presenter_params {
 	 * return an error. The user destroys the presenter soon.
 	 */
 	void (*lost)(void *data, const char *sentence);
+	/* Optional: one of the list could not be made; what it has said up to here is void. */
+	void (*failed)(void *data);
 	void (*key)(void *data, const struct presenter_key *key);
 	void *data;
 };

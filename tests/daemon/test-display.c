@@ -15,6 +15,7 @@ static struct {
 	struct presenter_params params;
 	struct presenter presenter;
 	unsigned failures; /* of the next attempts */
+	bool loses;        /* the first of the list, which then fails */
 	unsigned attempts, living;
 } fake;
 
@@ -30,6 +31,10 @@ struct presenter *presenter_create(const char *list, const struct presenter_para
 		return NULL;
 	}
 	CHECK_INT(fake.living, 0);
+	if (fake.loses) {
+		params->lost(params->data, "the display server went away");
+		params->failed(params->data);
+	}
 	fake.living++;
 	fake.params = *params;
 	fake.presenter.impl = &fake_impl;
@@ -160,6 +165,22 @@ static void test_destroyed_while_lost(void)
 	fixture_finish(&fixture);
 }
 
+/* What the first of the list said before it failed is not about the second, which works. */
+static void test_failed_one_was_lost(void)
+{
+	struct fixture fixture;
+	struct error error;
+	fixture_init(&fixture);
+	fake.loses = true;
+	fixture.display = create(&fixture, &error);
+	CHECK(fixture.display);
+	for (int i = 0; i < 5; i++)
+		step(&fixture, 10);
+	CHECK_INT(fixture.user.changes, 1);
+	CHECK(fixture.user.presenter == &fake.presenter);
+	fixture_finish(&fixture);
+}
+
 static void test_none_works(void)
 {
 	struct fixture fixture;
@@ -176,6 +197,7 @@ int main(void)
 {
 	RUN(test_lost_and_found);
 	RUN(test_destroyed_while_lost);
+	RUN(test_failed_one_was_lost);
 	RUN(test_none_works);
 	return test_result();
 }
