@@ -108,6 +108,7 @@ static struct presenter *make(struct display *display, struct error *error)
 		.failed = on_failed,
 		.key = on_key,
 		.data = display,
+		.vsync = display->params.vsync,
 	};
 	return presenter_create(settings->present, &params, error);
 }

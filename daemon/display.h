@@ -34,6 +34,7 @@ struct display_params {
 	 */
 	void (*change)(void *data, struct presenter *presenter);
 	void *data;
+	struct vsync *vsync; /* of the presenters, NULL: none */
 };
 
 /* Makes the first presenter; change() is called before it returns. NULL with a sentence. */

@@ -19,6 +19,7 @@ static const char *const pattern_choices[] = {"toggle",      "pulse",   "pulse-r
 static const char *const governor_choices[] = {"auto", "off", NULL};
 static const char *const exit_choices[] = {"keep", "black", NULL};
 static const char *const level_choices[] = {"low", "high", NULL};
+static const char *const edge_choices[] = {"rising", "falling", NULL};
 static const char *const final_choices[] = {"low", "high", "keep", NULL};
 static const char *const patch_choices[] = {"off", "alternate", "sequence", NULL};
 static const char *const corner_choices[] = {"top-left", "top-right", "bottom-left", "bottom-right", NULL};
@@ -144,6 +145,13 @@ static const struct option_row rows[] = {
 	TEXT(lab.trigger_line, "trigger-line", OPTION_LAB, "",
 		 "Input line of a button or a stimulus computer; its rising edge is noted with the next flip. Empty: none."),
 	FLAG(lab.trigger_active_low, "trigger-active-low", OPTION_LAB, "no", "A trigger is a falling voltage."),
+	TEXT(
+		lab.vsync_line, "vsync-line", OPTION_LAB, "",
+		"Input line on which the display, or a sensor, gives an edge at each vblank: vblanks and flips follow it where "
+		"the display stamps none. Empty: none."),
+	CHOICE(lab.vsync_edge, "vsync-edge", OPTION_LAB, "rising", edge_choices, "The edge of the vsync line that counts."),
+	REAL(lab.vsync_offset_us, "vsync-offset-us", OPTION_LAB, "0", -100000, 100000, "us",
+		 "A vblank is so long after its edge."),
 	NUMBER(lab.debounce_us, "debounce-us", OPTION_LAB, "0", 0, 1000000, "us",
 		   "Edges of the photodiode so soon after one that counted are bounce."),
 	NUMBER(lab.photon_least_us, "photon-least-us", OPTION_LAB, "0", 0, 1000000, "us",

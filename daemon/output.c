@@ -364,6 +364,7 @@ static int start_display(struct output *output, struct error *error)
 		.key = on_key,
 		.change = on_change,
 		.data = output,
+		.vsync = lab_get_vsync(output->params.lab),
 	};
 	output->display = display_create(&params, error);
 	return output->display ? 0 : -ENODEV;

@@ -52,6 +52,8 @@ static const char *source_sentence(enum presenter_time_source source)
 		return "stamped by the kernel's display driver: start of scan-out, good to tens of microseconds";
 	case PRESENTER_TIME_DISPLAY_SERVER:
 		return "told by the display server, as good as its own source";
+	case PRESENTER_TIME_EXTERNAL:
+		return "a vblank of the external vsync: the line through its edges, so as good as that wire and its offset";
 	case PRESENTER_TIME_TIMER:
 		return "ESTIMATED: no display, a timer of the daemon's grid fired; nothing was shown";
 	case PRESENTER_TIME_ESTIMATED:

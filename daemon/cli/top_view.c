@@ -267,7 +267,7 @@ static void print_totals(const struct page *page, const json_t *status)
 
 static void print_lab(const struct page *page, const json_t *lab)
 {
-	static const char *const lines[] = {"marker", "strobe", "photodiode", "trigger"};
+	static const char *const lines[] = {"marker", "strobe", "photodiode", "trigger", "vsync"};
 	char line[400];
 	if (!json_is_object(lab))
 		return;

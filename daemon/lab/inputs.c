@@ -25,6 +25,7 @@ void inputs_init(struct lab *lab)
 	const struct lab_settings *settings = lab->settings;
 	lab->photodiode = input(lab, settings->photodiode_line, "photodiode-line", settings->photodiode_active_low);
 	lab->trigger = input(lab, settings->trigger_line, "trigger-line", settings->trigger_active_low);
+	lab->vsync_lines = input(lab, settings->vsync_line, "vsync-line", false);
 	lab->match.least_ns = (uint64_t)settings->photon_least_us * 1000;
 	lab->match.debounce_ns = (uint64_t)settings->debounce_us * 1000;
 }
@@ -55,23 +56,45 @@ void inputs_flip(struct lab *lab, struct row *row, bool changed)
 	match_add_flip(&lab->match, row->points.vblank, row->points.time[POINT_FLIP], want);
 }
 
-static void read_line(struct lab *lab, struct lines *lines, uint64_t now_ns, bool photodiode)
+static void take_photon(struct lab *lab, const struct chip_edge *edge)
+{
+	match_add_edge(&lab->match, edge->time_ns, edge->rising);
+}
+
+/* The leading edge is the trigger; an input says which by active-low. */
+static void take_trigger(struct lab *lab, const struct chip_edge *edge)
+{
+	lab->triggers += edge->rising;
+	lab->trigger_ns = edge->rising ? edge->time_ns : lab->trigger_ns;
+}
+
+static void take_vsync(struct lab *lab, const struct chip_edge *edge)
+{
+	if (edge->rising == (lab->settings->vsync_edge == 0))
+		vsync_add_edge(lab->vsync, edge->time_ns);
+}
+
+static void read_line(struct lab *lab, struct lines *lines, uint64_t now_ns,
+					  void (*take)(struct lab *lab, const struct chip_edge *edge))
 {
 	struct chip_edge edges[READ_MOST];
-	int count;
-	if (!lines->chip)
-		return;
-	while ((count = chip_read(lines->chip, edges, READ_MOST)) > 0) {
-		for (int i = 0; i < count && photodiode; i++)
-			match_add_edge(&lab->match, edges[i].time_ns, edges[i].rising);
-		for (int i = 0; i < count && !photodiode; i++) {
-			/* The leading edge is the trigger; an input says which by active-low. */
-			lab->triggers += edges[i].rising;
-			lab->trigger_ns = edges[i].rising ? edges[i].time_ns : lab->trigger_ns;
-		}
-	}
+	int count = 0;
+	while (lines->chip && (count = chip_read(lines->chip, edges, READ_MOST)) > 0)
+		for (int i = 0; i < count; i++)
+			take(lab, &edges[i]);
 	if (count < 0)
 		lines_lose(lines, count, now_ns);
+}
+
+static void check_vsync(struct lab *lab, uint64_t now_ns)
+{
+	char sentence[VSYNC_SENTENCE];
+	if (!lab->vsync || !vsync_check(lab->vsync, now_ns, sentence))
+		return;
+	if (vsync_get_counts(lab->vsync).state == VSYNC_TRUSTED)
+		log_info(lab->params.log, "%s", sentence);
+	else
+		log_warning(lab->params.log, "%s", sentence);
 }
 
 static void settle(struct lab *lab, uint64_t now_ns)
@@ -89,24 +112,31 @@ static void settle(struct lab *lab, uint64_t now_ns)
 
 void inputs_work(struct lab *lab, uint64_t now_ns)
 {
-	read_line(lab, &lab->photodiode, now_ns, true);
-	read_line(lab, &lab->trigger, now_ns, false);
+	struct lines *const all[] = {&lab->vsync_lines, &lab->photodiode, &lab->trigger};
+	read_line(lab, &lab->vsync_lines, now_ns, take_vsync);
+	read_line(lab, &lab->photodiode, now_ns, take_photon);
+	read_line(lab, &lab->trigger, now_ns, take_trigger);
+	check_vsync(lab, now_ns);
 	settle(lab, now_ns);
-	lines_check(&lab->photodiode, now_ns);
-	lines_check(&lab->trigger, now_ns);
-	lines_revive(&lab->photodiode, now_ns);
-	lines_revive(&lab->trigger, now_ns);
+	for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) {
+		lines_check(all[i], now_ns);
+		lines_revive(all[i], now_ns);
+	}
+}
+
+static uint64_t earlier(uint64_t a, uint64_t b)
+{
+	return a < b ? a : b;
 }
 
 uint64_t inputs_next(const struct lab *lab)
 {
-	uint64_t next = lines_next(&lab->photodiode);
-	if (lines_next(&lab->trigger) < next)
-		next = lines_next(&lab->trigger);
-	if (lab->match.flip_count > 0) {
-		const uint64_t settled = lab->match.flips[0].flip_ns + lab->match.most_ns + HOLD_NS;
-		next = settled < next ? settled : next;
-	}
+	uint64_t next =
+		earlier(lines_next(&lab->vsync_lines), earlier(lines_next(&lab->photodiode), lines_next(&lab->trigger)));
+	if (lab->vsync)
+		next = earlier(next, vsync_next(lab->vsync));
+	if (lab->match.flip_count > 0)
+		next = earlier(next, lab->match.flips[0].flip_ns + lab->match.most_ns + HOLD_NS);
 	return next;
 }
 
@@ -114,4 +144,5 @@ void inputs_finish(struct lab *lab)
 {
 	lines_finish(&lab->photodiode);
 	lines_finish(&lab->trigger);
+	lines_finish(&lab->vsync_lines);
 }

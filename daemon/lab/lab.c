@@ -15,7 +15,8 @@
 bool lab_is_wanted(const struct lab_settings *settings)
 {
 	return settings->latency || *settings->latency_log || *settings->gpio_line || *settings->strobe_line ||
-		   *settings->photodiode_line || *settings->trigger_line || settings->patch != LAB_PATCH_OFF;
+		   *settings->photodiode_line || *settings->trigger_line || *settings->vsync_line ||
+		   settings->patch != LAB_PATCH_OFF;
 }
 
 /* ---- checks ---- */
@@ -47,7 +48,8 @@ static int check(const struct lab_settings *settings, struct error *error)
 	if (check_pattern(settings, error) < 0 ||
 		check_single(settings->gpio_chip, settings->strobe_line, "strobe-line", error) < 0 ||
 		check_single(settings->gpio_chip, settings->photodiode_line, "photodiode-line", error) < 0 ||
-		check_single(settings->gpio_chip, settings->trigger_line, "trigger-line", error) < 0)
+		check_single(settings->gpio_chip, settings->trigger_line, "trigger-line", error) < 0 ||
+		check_single(settings->gpio_chip, settings->vsync_line, "vsync-line", error) < 0)
 		return -EINVAL;
 	if (settings->strobe_duty > settings->strobe_limit)
 		return error_set(error, -EINVAL, "strobe-duty: %g is above the strobe-limit, %g", settings->strobe_duty,
@@ -74,6 +76,7 @@ static void free_lab(struct lab *lab)
 	guard_dismiss(&lab->guard);
 	latency_log_destroy(&lab->latency_log);
 	code_destroy(&lab->code);
+	vsync_destroy(&lab->vsync);
 	if (lab->wake_fd >= 0)
 		close(lab->wake_fd);
 	pthread_mutex_destroy(&lab->shared.lock);
@@ -85,7 +88,9 @@ static int prepare(struct lab *lab, struct error *error)
 {
 	lab->wake_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
 	lab->code = code_create();
-	if (lab->wake_fd < 0 || !lab->code)
+	if (*lab->settings->vsync_line)
+		lab->vsync = vsync_create(lab->period_ns, lab->settings->vsync_offset_us * 1e3);
+	if (lab->wake_fd < 0 || !lab->code || (*lab->settings->vsync_line && !lab->vsync))
 		return error_set(error, -ENOMEM, "lab: out of memory or file descriptors");
 	outputs_init(lab);
 	inputs_init(lab);
@@ -142,6 +147,11 @@ void lab_destroy(struct lab **lab)
 	wake(self);
 	pthread_join(self->thread, NULL);
 	free_lab(self);
+}
+
+struct vsync *lab_get_vsync(struct lab *lab)
+{
+	return lab ? lab->vsync : NULL;
 }
 
 /* ---- feeding ---- */

@@ -23,6 +23,7 @@
 #include "daemon/lab/settings.h"
 #include "daemon/log.h"
 #include "daemon/present/presenter.h"
+#include "daemon/present/vsync.h"
 
 struct lab;
 
@@ -46,6 +47,9 @@ bool lab_is_wanted(const struct lab_settings *settings);
 struct lab *lab_create(const struct lab_params *params, struct error *error);
 /* Lines get their final levels, the log is completed. Call when nobody feeds it any more. */
 void lab_destroy(struct lab **lab);
+
+/* The external vsync that the lab reads, for presenters; NULL: none is wished for. Lives as long as the lab. */
+struct vsync *lab_get_vsync(struct lab *lab);
 
 /* ---- the presenter's thread; no wait ---- */
 

@@ -39,6 +39,9 @@ struct lab_settings {
 	/* inputs */
 	char photodiode_line[32], trigger_line[32]; /* "": none */
 	bool photodiode_active_low, trigger_active_low;
+	char vsync_line[32]; /* "": none */
+	uint32_t vsync_edge; /* 0 rising, 1 falling */
+	double vsync_offset_us;
 	uint32_t debounce_us;
 	uint32_t photon_least_us, photon_most_us; /* most 0: by the refresh rate */
 	/* the patch */

@@ -29,8 +29,8 @@ struct lab_shared {
 	struct points ring[LAB_RING];
 	uint64_t row_count;
 	struct spans spans;
-	char marker[256], strobe[256], photodiode[256], trigger[256];
-	bool marker_there, strobe_there, photodiode_there, trigger_there;
+	char marker[256], strobe[256], photodiode[256], trigger[256], vsync[256];
+	bool marker_there, strobe_there, photodiode_there, trigger_there, vsync_there;
 	uint64_t edges, late_changes, schedule_dropped, stray_photons, bounced, triggers;
 	uint64_t strobe_pulses, strobe_left_out, strobe_too_long;
 	uint32_t levels;
@@ -46,10 +46,11 @@ struct lab {
 	atomic_bool stop, realtime;
 	struct guard guard;
 	struct latency_log *latency_log;
+	struct vsync *vsync; /* NULL: none is wished for */
 	struct lab_shared shared;
 
 	/* the thread's own */
-	struct lines marker, strobe_lines, photodiode, trigger;
+	struct lines marker, strobe_lines, photodiode, trigger, vsync_lines;
 	struct pattern pattern;
 	struct schedule schedule;
 	uint32_t levels; /* of the marker, as set */

@@ -38,6 +38,23 @@ static json_t *line_json(bool wanted, bool there, const char *text)
 	return wanted ? json_pack("{s:b, s:s}", "there", there, "text", text) : json_null();
 }
 
+static json_t *vsync_json(const struct lab *lab, const struct lab_shared *shared)
+{
+	static const char *const states[] = {"learning", "trusted", "refused"};
+	if (!lab->vsync)
+		return json_null();
+	json_t *object = line_json(true, shared->vsync_there, shared->vsync);
+	const struct vsync_counts counts = vsync_get_counts(lab->vsync);
+	json_object_set_new(object, "state", json_string(states[counts.state]));
+	json_object_set_new(object, "period_us", json_real(microseconds(counts.period_ns)));
+	json_object_set_new(object, "jitter_us", json_real(microseconds(counts.jitter_ns)));
+	json_object_set_new(object, "edges", json_integer((json_int_t)counts.edges));
+	json_object_set_new(object, "bounced", json_integer((json_int_t)counts.bounced));
+	json_object_set_new(object, "extra", json_integer((json_int_t)counts.extra));
+	json_object_set_new(object, "missed", json_integer((json_int_t)counts.missed));
+	return object;
+}
+
 static json_t *shared_json(const struct lab *lab, const struct lab_shared *shared)
 {
 	const struct lab_settings *settings = lab->settings;
@@ -48,6 +65,7 @@ static json_t *shared_json(const struct lab *lab, const struct lab_shared *share
 	json_object_set_new(object, "photodiode",
 						line_json(*settings->photodiode_line, shared->photodiode_there, shared->photodiode));
 	json_object_set_new(object, "trigger", line_json(*settings->trigger_line, shared->trigger_there, shared->trigger));
+	json_object_set_new(object, "vsync", vsync_json(lab, shared));
 	const struct {
 		const char *name;
 		uint64_t count;

@@ -135,6 +135,7 @@ static void publish_state(struct lab *lab)
 	publish_lines(&lab->strobe_lines, shared->strobe, &shared->strobe_there);
 	publish_lines(&lab->photodiode, shared->photodiode, &shared->photodiode_there);
 	publish_lines(&lab->trigger, shared->trigger, &shared->trigger_there);
+	publish_lines(&lab->vsync_lines, shared->vsync, &shared->vsync_there);
 	shared->edges = lab->edges;
 	shared->late_changes = lab->late_changes;
 	shared->schedule_dropped = lab->schedule.dropped;
@@ -180,16 +181,22 @@ static uint64_t next_time(const struct lab *lab)
 	return rows_next(&lab->rows) < next ? rows_next(&lab->rows) : next;
 }
 
+static int fd_of(const struct lines *lines)
+{
+	return lines->chip ? chip_fd(lines->chip) : -1;
+}
+
 static void wait_for_work(struct lab *lab)
 {
-	struct pollfd fds[3] = {{.fd = lab->wake_fd, .events = POLLIN},
-							{.fd = lab->photodiode.chip ? chip_fd(lab->photodiode.chip) : -1, .events = POLLIN},
-							{.fd = lab->trigger.chip ? chip_fd(lab->trigger.chip) : -1, .events = POLLIN}};
+	struct pollfd fds[4] = {{.fd = lab->wake_fd, .events = POLLIN},
+							{.fd = fd_of(&lab->photodiode), .events = POLLIN},
+							{.fd = fd_of(&lab->trigger), .events = POLLIN},
+							{.fd = fd_of(&lab->vsync_lines), .events = POLLIN}};
 	const uint64_t next_ns = next_time(lab), now_ns = clock_now(lab->params.clock);
 	const uint64_t span = next_ns > now_ns ? next_ns - now_ns : 0;
 	const struct timespec timeout = {(time_t)(span / UINT64_C(1000000000)), (long)(span % UINT64_C(1000000000))};
 	uint64_t count;
-	if (ppoll(fds, 3, next_ns == LAB_NEVER ? NULL : &timeout, NULL) < 0 && errno != EINTR)
+	if (ppoll(fds, 4, next_ns == LAB_NEVER ? NULL : &timeout, NULL) < 0 && errno != EINTR)
 		log_error(lab->params.log, "lab: poll: %s", strerror(errno));
 	if ((fds[0].revents & POLLIN) && read(lab->wake_fd, &count, sizeof(count)) < 0)
 		log_debug(lab->params.log, "lab: eventfd: %s", strerror(errno));

@@ -13,7 +13,9 @@
  *
  * Where swaps wait for the display, its vblanks are learned from their time
  * stamps; where they do not (no vsync), vblanks are those of the rate wished
- * for, and pictures are drawn at their times.
+ * for, and pictures are drawn at their times. With an external vsync (vsync.h)
+ * vblanks are its own there, and swaps that wait without a stamp are dated back
+ * to them.
  */
 #include <errno.h>
 #include <stdatomic.h>
@@ -24,6 +26,7 @@
 #include "daemon/present/drawer.h"
 #include "daemon/present/pictures.h"
 #include "daemon/present/vblanks.h"
+#include "daemon/present/vsync.h"
 
 #define MS UINT64_C(1000000)
 #define LEAST_LEAD (MS + MS / 2)
@@ -53,8 +56,9 @@ struct glfw {
 	uint32_t drawn_changes, probed_displays;
 	bool waits_for_display; /* swaps do */
 	struct vblanks vblanks;
-	uint64_t first_vblank; /* vblank 0 of `vblanks` */
-	uint32_t skipped;      /* since the last flip */
+	struct vblanks returns; /* as the returns of swaps alone have them */
+	uint64_t first_vblank;  /* vblank 0 of `vblanks` */
+	uint32_t skipped;       /* since the last flip */
 };
 
 /* ---- the keeper: orders ---- */
@@ -160,6 +164,7 @@ static void begin_grid(struct glfw *self, double refresh_hz)
 		vblanks_init(&self->vblanks, (uint64_t)(refresh_hz * 1e3 + 0.5), 1000, now_ns);
 	else
 		vblanks_init(&self->vblanks, pictures->params.refresh_numerator, pictures->params.refresh_denominator, now_ns);
+	self->returns = self->vblanks;
 	adopt_vblanks(self);
 }
 
@@ -176,6 +181,8 @@ static void probe(struct glfw *self)
 	const bool waits = mode_hz > 0.0 && hz > 0.6 * mode_hz && hz < 1.5 * mode_hz;
 	const bool other = waits || self->waits_for_display;
 	self->waits_for_display = waits;
+	if (mode_hz > 0.0)
+		vsync_expect(pictures->params.vsync, 1e9 / mode_hz);
 	if (other)
 		begin_grid(self, mode_hz);
 	set_lead(self, swap.drawing_ns);
@@ -190,6 +197,13 @@ static void probe(struct glfw *self)
 
 /* ---- the keeper: vblanks ---- */
 
+/* With the lock: where swaps wait for the display its vblanks come from them. */
+static bool follow_vsync(struct glfw *self)
+{
+	struct pictures *pictures = &self->pictures;
+	return !self->waits_for_display && pictures_follow_vsync(pictures, clock_now(pictures->params.clock));
+}
+
 /* With the lock: what the swap says about the flip and the display. */
 static void note_swap(struct glfw *self, const struct drawer_swap *swap, struct presenter_flip *flip)
 {
@@ -200,7 +214,11 @@ static void note_swap(struct glfw *self, const struct drawer_swap *swap, struct 
 	flip->late = swap->time_ns >= grid_time(&pictures->grid, flip->vblank + 1);
 	if (!self->waits_for_display)
 		return;
-	const uint64_t vblank = self->first_vblank + vblanks_add(&self->vblanks, swap->sequence, swap->time_ns);
+	vblanks_add(&self->returns, 0, swap->time_ns);
+	if (swap->source == PRESENTER_TIME_ESTIMATED &&
+		vsync_date_back(pictures->params.vsync, &self->returns, &flip->flip_ns, &flip->sequence))
+		flip->time_source = PRESENTER_TIME_EXTERNAL;
+	const uint64_t vblank = self->first_vblank + vblanks_add(&self->vblanks, flip->sequence, flip->flip_ns);
 	adopt_vblanks(self);
 	set_lead(self, swap->drawing_ns);
 	flip->late = vblank > flip->vblank;
@@ -215,6 +233,7 @@ static void keep_vblank(struct glfw *self)
 {
 	struct pictures *pictures = &self->pictures;
 	struct drawer_swap swap;
+	const bool by_vsync = follow_vsync(self);
 	struct presenter_flip flip = pictures_show_next(pictures, clock_now(pictures->params.clock));
 	flip.skipped += self->skipped;
 	self->skipped = 0;
@@ -239,6 +258,10 @@ static void keep_vblank(struct glfw *self)
 		clock_wait_until(pictures->params.clock, flip.target_ns);
 		flip.flip_ns = clock_now(pictures->params.clock);
 		flip.late = flip.flip_ns >= flip.target_ns + (uint64_t)grid_period_ns(&pictures->grid);
+		if (by_vsync && !flip.late) {
+			flip.time_source = PRESENTER_TIME_EXTERNAL;
+			flip.flip_ns = flip.target_ns;
+		}
 	}
 	pictures->params.flip(pictures->params.data, &flip);
 	pthread_mutex_lock(&pictures->lock);
@@ -273,6 +296,7 @@ static void *run(void *data)
 			keep_still(self);
 			continue;
 		}
+		follow_vsync(self);
 		const uint64_t vblank = pictures->next_vblank;
 		const uint64_t start_ns = grid_time(&pictures->grid, vblank) - pictures->lead_ns;
 		pthread_mutex_unlock(&pictures->lock);

@@ -3,8 +3,8 @@
 
 /*
  * The headless presenter: no display, but the timing of one. A thread sleeps
- * until each vblank of an absolute grid, makes the queued picture the one on
- * display, and notes when it did so. A picture counts for a vblank only if it
+ * until each vblank of an absolute grid (or of the external vsync, if there is
+ * one), makes the queued picture the one on display, and notes when it did so. A picture counts for a vblank only if it
  * was queued before the vblank's time, as with hardware.
  */
 #include <errno.h>
@@ -33,6 +33,7 @@ static void *run(void *data)
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	pthread_mutex_lock(&pictures->lock);
 	while (!pictures->stop) {
+		const bool by_vsync = pictures_follow_vsync(pictures, clock_now(pictures->params.clock));
 		if (!pictures->running) {
 			pthread_cond_wait(&pictures->wake, &pictures->lock);
 			continue;
@@ -44,8 +45,11 @@ static void *run(void *data)
 		if (pictures->stop || !pictures->running || pictures->next_vblank != vblank)
 			continue;
 		struct presenter_flip flip = pictures_show_next(pictures, clock_now(pictures->params.clock));
-		flip.time_source = PRESENTER_TIME_TIMER;
 		flip.late = flip.flip_ns >= grid_time(&pictures->grid, flip.vblank + 1);
+		flip.time_source = by_vsync ? PRESENTER_TIME_EXTERNAL : PRESENTER_TIME_TIMER;
+		/* A display shows it at a vblank, whenever the timer fired. */
+		if (by_vsync && !flip.late)
+			flip.flip_ns = flip.target_ns;
 		pthread_mutex_unlock(&pictures->lock);
 		pictures->params.flip(pictures->params.data, &flip);
 		pthread_mutex_lock(&pictures->lock);

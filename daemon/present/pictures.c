@@ -8,6 +8,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "daemon/present/vsync.h"
+
 /* A thread that slept so many vblanks too long skips them. */
 #define SKIP_AFTER 8u
 
@@ -52,6 +54,23 @@ struct presenter_flip pictures_show_next(struct pictures *pictures, uint64_t now
 		flip.group = pictures->flips.front.group;
 	}
 	return flip;
+}
+
+bool pictures_follow_vsync(struct pictures *pictures, uint64_t now_ns)
+{
+	struct grid grid;
+	const uint64_t trust = vsync_get_grid(pictures->params.vsync, now_ns, &grid);
+	if (trust != 0 && trust != pictures->vsync_trust) {
+		const uint64_t half_ns = (uint64_t)(grid_period_ns(&grid) / 2.0);
+		const uint64_t first_ns = grid.epoch_ns > half_ns ? grid.epoch_ns - half_ns : 0;
+		pictures->vsync_shift = grid_at_or_after(&pictures->grid, first_ns) - grid.epoch_vblank;
+	}
+	pictures->vsync_trust = trust;
+	if (trust == 0)
+		return false;
+	grid.epoch_vblank += pictures->vsync_shift;
+	pictures->grid = grid;
+	return true;
 }
 
 static struct pictures *pictures_of(struct presenter *presenter)

@@ -24,6 +24,8 @@ struct pictures {
 	uint64_t lead_ns; /* a picture must be queued so long before its vblank */
 	struct flips flips;
 	uint64_t next_vblank; /* the first one not handled */
+	uint64_t vsync_trust; /* of the external vsync that the grid follows, 0 none (vsync.h) */
+	uint64_t vsync_shift; /* numbers of the grid less those of the external vsync, modulo 2^64 */
 	bool running;         /* vblanks are handled */
 	bool stop;
 	struct pictures_memory {
@@ -43,6 +45,12 @@ void pictures_finish(struct pictures *pictures);
  * A thread that slept over many vblanks skips them rather than showing them in a burst. now_ns: for that.
  */
 struct presenter_flip pictures_show_next(struct pictures *pictures, uint64_t now_ns);
+
+/*
+ * With the lock: lets the grid follow the external vsync as long as that is to be trusted, with numbers that go on;
+ * then true. Else the grid goes on at the rate that it has.
+ */
+bool pictures_follow_vsync(struct pictures *pictures, uint64_t now_ns);
 
 /* As in struct presenter_impl. */
 struct grid pictures_get_grid(struct presenter *presenter);

@@ -12,7 +12,7 @@ static const struct presenter_impl *const impls[] = {&presenter_headless, &prese
 
 const char *presenter_time_source_name(enum presenter_time_source source)
 {
-	static const char *const names[] = {"estimated", "timer", "display server", "kernel"};
+	static const char *const names[] = {"estimated", "timer", "display server", "kernel", "external vsync"};
 	return source < PRESENTER_TIME_SOURCES ? names[source] : "";
 }
 

@@ -58,9 +58,10 @@ enum presenter_time_source {
 	PRESENTER_TIME_TIMER, /* there is no display: when the timer of the grid fired */
 	PRESENTER_TIME_DISPLAY_SERVER, /* told by the display server (OML_sync_control, presentation feedback) */
 	PRESENTER_TIME_KERNEL,         /* the kernel's event of the page flip */
+	PRESENTER_TIME_EXTERNAL,       /* a vblank of the external vsync (vsync.h) */
 	PRESENTER_TIME_SOURCES,
 };
-/* "estimated", "timer", "display server", "kernel". Static. */
+/* "estimated", "timer", "display server", "kernel", "external vsync". Static. */
 const char *presenter_time_source_name(enum presenter_time_source source);
 
 /* One vblank is over. */
@@ -97,12 +98,15 @@ struct presenter_options {
 	const char *title;      /* of a window; NULL: "Pursuit" */
 };
 
+struct vsync;
+
 struct presenter_params {
 	struct clock *clock;
 	const struct log *log;
 	uint64_t refresh_numerator; /* wished for; a display of its own rate may differ */
 	uint64_t refresh_denominator;
 	struct presenter_options options; /* strings live as long as the presenter */
+	struct vsync *vsync;              /* for displays that stamp nothing themselves; NULL: none. Lives as long */
 	void (*flip)(void *data, const struct presenter_flip *flip);
 	/*
 	 * The display is gone for good and shows nothing any more; said once. Calls after it do nothing and succeed, or

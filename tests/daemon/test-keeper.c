@@ -13,6 +13,7 @@
 
 #include "daemon/present/drawer.h"
 #include "daemon/present/presenter.h"
+#include "daemon/present/vsync.h"
 #include "daemon/present/window.h"
 #include "tests/test.h"
 
@@ -40,7 +41,10 @@ static struct drawer fake_drawer;
 static struct presenter *presenter;
 static uint64_t quick_ns, slow_ns; /* what a swap takes, before and between CHANGE_AT and BACK_AT */
 static bool hides;
+static struct vsync *wire; /* of the display, with an edge at each vblank; NULL: none */
+static uint64_t wire_next_ns;
 /* On the keeper's thread. */
+static uint32_t dated, on_vblank, off_vblank; /* flips by the wire; targets at its vblanks in the end */
 static uint32_t flips, drawn, late_between, shown, presented, drawn_at_end, orders_between;
 static struct window_state state;
 static atomic_bool done;
@@ -111,11 +115,18 @@ static bool is_between(void)
 	return flips >= CHANGE_AT && flips < BACK_AT;
 }
 
+/* With a wire returns of swaps are late by up to 2 ms, or nobody would need it. */
 static uint64_t time_of_last_swap(uint64_t now_ns, uint64_t each_ns, uint32_t swaps)
 {
 	if (each_ns == DISPLAY)
-		return (now_ns / PERIOD_NS + swaps) * PERIOD_NS;
+		return (now_ns / PERIOD_NS + swaps) * PERIOD_NS + (wire ? flips * 7919 % 2000 * 1000 : 0);
 	return each_ns == NEVER ? NEVER : now_ns + swaps * each_ns;
+}
+
+static void play_wire(void)
+{
+	for (; wire && wire_next_ns <= clock_now(&virtual_clock.clock); wire_next_ns += PERIOD_NS)
+		vsync_add_edge(wire, wire_next_ns);
 }
 
 void drawer_order(struct drawer *drawer, const struct presenter_image *image, uint32_t width, uint32_t height,
@@ -140,6 +151,7 @@ bool drawer_wait(struct drawer *drawer, uint64_t until_ns, struct drawer_swap *s
 		if (drawer->done_ns > clock_now(&virtual_clock.clock))
 			return false;
 	}
+	play_wire();
 	drawer->under_way = false;
 	*swap = (struct drawer_swap){.time_ns = drawer->done_ns, .source = PRESENTER_TIME_ESTIMATED};
 	if (drawer->swaps >= 4)
@@ -165,7 +177,15 @@ static void on_flip(void *data, const struct presenter_flip *flip)
 	(void)data;
 	if (atomic_load(&done))
 		return;
+	play_wire();
 	flips += 1 + flip->skipped;
+	if (wire && flips > VBLANKS / 2) {
+		const uint64_t off_ns = (flip->target_ns + PERIOD_NS / 2) % PERIOD_NS;
+		const bool on = off_ns > PERIOD_NS / 2 - 50000 && off_ns < PERIOD_NS / 2 + 50000;
+		dated += flip->time_source == PRESENTER_TIME_EXTERNAL && (flip->flip_ns + 50000) % PERIOD_NS < 100000;
+		on_vblank += on;
+		off_vblank += !on;
+	}
 	shown += flip->shown == PRESENTER_PICTURE;
 	drawn += flip->time_source == PRESENTER_TIME_ESTIMATED;
 	drawn_at_end += flips > VBLANKS - 100 && flip->time_source == PRESENTER_TIME_ESTIMATED;
@@ -193,7 +213,7 @@ static void on_lost(void *data, const char *sentence)
 	CHECK(false);
 }
 
-static void play(uint64_t quick, uint64_t slow, bool hide)
+static void run(uint64_t quick, uint64_t slow, bool hide)
 {
 	struct log log;
 	struct error error;
@@ -203,12 +223,15 @@ static void play(uint64_t quick, uint64_t slow, bool hide)
 									  .refresh_denominator = 1,
 									  .flip = on_flip,
 									  .key = on_key,
-									  .lost = on_lost};
+									  .lost = on_lost,
+									  .vsync = wire};
 	log_init(&log, LOG_LEVEL_ERROR);
 	clock_init_virtual(&virtual_clock, 1000 * MS);
 	quick_ns = quick;
 	slow_ns = slow;
 	hides = hide;
+	dated = on_vblank = off_vblank = 0;
+	wire_next_ns = PERIOD_NS * 120;
 	flips = drawn = late_between = shown = presented = drawn_at_end = orders_between = 0;
 	atomic_store(&done, false);
 	presenter = presenter_glfw.create(&params, &error);
@@ -218,6 +241,11 @@ static void play(uint64_t quick, uint64_t slow, bool hide)
 	while (!atomic_load(&done))
 		sched_yield();
 	presenter->impl->destroy(presenter);
+}
+
+static void play(uint64_t quick, uint64_t slow, bool hide)
+{
+	run(quick, slow, hide);
 	CHECK(drawn > 90);        /* at the beginning */
 	CHECK(drawn_at_end > 60); /* and again when the swaps come back */
 	CHECK(presented > VBLANKS - 60);
@@ -256,11 +284,37 @@ static void test_slow_swaps_of_a_display(void)
 	play(DISPLAY, NEVER, true);
 }
 
+/* Swaps that wait come back some time after their vblank: the wire says when that was. */
+static void test_external_vsync_of_a_display(void)
+{
+	wire = vsync_create((double)PERIOD_NS, 0.0);
+	run(DISPLAY, DISPLAY, false);
+	CHECK(dated > VBLANKS / 2 - 10);
+	CHECK(on_vblank > VBLANKS / 2 - 10 && off_vblank < 3);
+	vsync_destroy(&wire);
+}
+
+/* Swaps that do not wait are ordered at the wire's vblanks; their own times stay estimates. */
+static void test_external_vsync_by_the_clock(void)
+{
+	wire = vsync_create((double)PERIOD_NS, 0.0);
+	run(1 * MS, 1 * MS, false);
+	CHECK(on_vblank > VBLANKS / 2 - 10 && off_vblank < 3);
+	CHECK_INT(dated, 0);
+	CHECK(drawn_at_end > 90);
+	vsync_destroy(&wire);
+	/* Without it they are not. */
+	run(1 * MS, 1 * MS, false);
+	CHECK_INT(on_vblank, 0);
+}
+
 int main(void)
 {
 	RUN(test_hidden);
 	RUN(test_swap_that_hangs);
 	RUN(test_slow_swaps);
 	RUN(test_slow_swaps_of_a_display);
+	RUN(test_external_vsync_of_a_display);
+	RUN(test_external_vsync_by_the_clock);
 	return test_result();
 }

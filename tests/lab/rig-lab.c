@@ -6,10 +6,11 @@
  * in-betweens at a time, tiny pictures, each queued for its vblank. Who checks
  * it watches the kernel's tracepoints, not this program.
  *
- *   rig-lab [--flips F] [--pull PULL_FILE TRUTH_FILE] [--SETTING VALUE]...
+ *   rig-lab [--flips F] [--pull PULL_FILE TRUTH_FILE] [--wire PULL_FILE TRUTH_FILE PERIOD_NS] [--SETTING VALUE]...
  *
  * Prints the lab's status as JSON, with "flips" and "cpu_us_per_flip" (of all
- * threads). With --pull it plays the photodiode too (rig-pull.h).
+ * threads). With --pull it plays the photodiode too (rig-pull.h), with --wire
+ * the vsync of a display (rig-wire.h).
  */
 #include <errno.h>
 #include <inttypes.h>
@@ -21,6 +22,7 @@
 #include "daemon/options.h"
 #include "daemon/present/presenter.h"
 #include "tests/lab/rig-pull.h"
+#include "tests/lab/rig-wire.h"
 #include "tests/test.h"
 
 #define PICTURE 16u
@@ -36,6 +38,9 @@ struct rig {
 	struct presenter *presenter;
 	struct rig_pull *pull;
 	const char *pull_path, *truth_path;
+	struct rig_wire *wire;
+	const char *wire_path, *wire_truth;
+	uint64_t wire_ns;
 	uint64_t flips_wanted, first_vblank;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -139,6 +144,12 @@ static int parse(struct rig *rig, int argc, char **argv, struct error *error)
 			rig->truth_path = argv[++i];
 			continue;
 		}
+		if (strcmp(argv[i], "--wire") == 0 && i + 3 < argc) {
+			rig->wire_path = argv[++i];
+			rig->wire_truth = argv[++i];
+			rig->wire_ns = strtoull(argv[++i], NULL, 10);
+			continue;
+		}
 		const int taken = settings_argument(&rig->settings, LAB_GROUPS, argc, argv, &i, error);
 		if (taken < 0)
 			return taken;
@@ -151,7 +162,7 @@ static int parse(struct rig *rig, int argc, char **argv, struct error *error)
 static int start(struct rig *rig, struct error *error)
 {
 	const struct lab_params lab_params = {&rig->settings.lab, &rig->clock, &rig->log, 1e9 / 120.0, "program: rig-lab"};
-	const struct presenter_params params = {
+	struct presenter_params params = {
 		.clock = &rig->clock,
 		.log = &rig->log,
 		.refresh_numerator = rig->settings.refresh_numerator,
@@ -170,8 +181,11 @@ static int start(struct rig *rig, struct error *error)
 		if (!rig->lab)
 			return -1;
 	}
+	params.vsync = lab_get_vsync(rig->lab);
 	if (rig->pull_path && !(rig->pull = rig_pull_create(&rig->clock, rig->pull_path, rig->truth_path)))
 		return error_set(error, -EIO, "%s or %s cannot be opened", rig->pull_path, rig->truth_path);
+	if (rig->wire_path && !(rig->wire = rig_wire_create(&rig->clock, rig->wire_path, rig->wire_truth, rig->wire_ns)))
+		return error_set(error, -EIO, "%s or %s cannot be opened", rig->wire_path, rig->wire_truth);
 	rig->presenter = presenter_create(rig->settings.present, &params, error);
 	return rig->presenter ? 0 : -1;
 }
@@ -190,6 +204,7 @@ int main(int argc, char **argv)
 	clock_wait_until(&rig.clock, clock_now(&rig.clock) + 1500000000);
 	presenter_destroy(&rig.presenter);
 	rig_pull_destroy(&rig.pull);
+	rig_wire_destroy(&rig.wire);
 	report(&rig);
 	lab_destroy(&rig.lab);
 	return 0;

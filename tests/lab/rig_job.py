@@ -23,7 +23,7 @@ VALUE = re.compile(r"(\d+\.\d+): gpio_value: (\d+) set (\d)")
 VBLANK = re.compile(r"(\d+\.\d+): drm_vblank_event(?:_delivered)?: ")
 LINES = 28
 # offset: name, and lines that the kernel itself holds
-NAMES = {17: "MARKER", 18: "REAL", 19: "BETWEEN", 4: "PHOTODIODE", 5: "TRIGGER", 6: "STROBE"}
+NAMES = {17: "MARKER", 18: "REAL", 19: "BETWEEN", 4: "PHOTODIODE", 5: "TRIGGER", 6: "STROBE", 7: "VSYNC"}
 HOG = 27
 
 failures = []
@@ -227,6 +227,46 @@ def check_inputs():
     print(f"{right} edges at the right frame, {lost} lost ones noticed, {wrong} wrong; {status['bounced_photons']} bounces")
     check(right >= 10000 and wrong == 0, "inputs: right", right, "wrong", wrong)
     check(status["lost_photons"] == lost, "inputs: lost", status["lost_photons"], "not", lost)
+
+
+def check_vsync():
+    """
+    A display without time stamps, of 119.88 Hz, whose vsync comes by a wire; see rig-wire.h. Vblanks and markers follow
+    it where it is plausible, and only there.
+    """
+    truth_path, log_path, period_ns = f"{TMP}/truth", f"{TMP}/log.csv", 8341667
+    status, edges, _ = watched("--wire", f"{CHIP}/sim_gpio7/pull", truth_path, str(period_ns), "--vsync-line", "VSYNC",
+                               "--gpio-line", "MARKER", "--latency-log", log_path, flips=1180)
+    truth = [int(line) for line in read(truth_path).split()]
+    with open(log_path) as source:
+        rows = list(csv.DictReader(line for line in source if not line.startswith("#")))
+    said = status["stderr"]
+    check(said.count("vblanks follow it, 119.88") >= 4, "vsync: not found:", said)
+    check("not used until it is plausible: no edge comes" in said, "vsync: silence not noticed:", said)
+    check("edges too many" in said, "vsync: doubled edges not noticed:", said)
+    check(status["vsync"]["there"] and status["vsync"]["missed"] + status["vsync"]["extra"] > 10, "vsync:", status["vsync"])
+
+    good = {"external vsync": [], "timer": []}
+    for row in rows:
+        flip = int(row["flip_ns"])
+        second = (flip - truth[0]) / 1e9 % 5
+        off = min(abs(flip - edge) for edge in truth)
+        good[row["flip_source"]].append((second, off))
+    followed = [off for second, off in good["external vsync"] if second < 1.98 or second > 3]
+    wrong = [second for second, off in good["external vsync"] if 2.1 < second < 3.4 or 4.3 < second < 5]
+    check(len(followed) > 400 and max(followed) < 10000, "vsync: followed", len(followed), "off by", max(followed, default=0))
+    check(not wrong, "vsync: followed an implausible wire at", wrong[:5])
+    check(len(good["timer"]) > 300, "vsync: fallen back for", len(good["timer"]))
+    numbers = [int(row["vblank"]) for row in rows]
+    check(all(b - a == 1 for a, b in zip(numbers, numbers[1:])), "vsync: numbers of vblanks do not go on")
+    steps = [int(b["flip_ns"]) - int(a["flip_ns"]) for a, b in zip(rows, rows[1:])]
+    check(all(0.45 * period_ns < step < 1.55 * period_ns for step in steps), "vsync: steps", min(steps), max(steps))
+    marks = of_line(edges, 17)
+    by_wire = [mark for mark, row in zip(marks, rows) if row["flip_source"] == "external vsync"]
+    far = [mark for mark in by_wire if min(abs(mark * 1000 - edge) for edge in truth) > 100000 and
+           not 1.98 < (mark * 1000 - truth[0]) / 1e9 % 5 < 3]
+    print(f"{len(followed)} flips by the wire, at most {max(followed) / 1e3:.1f} us off; {len(good['timer'])} by the timer")
+    check(len(by_wire) > 400 and not far, "vsync:", len(far), "of", len(by_wire), "markers are not at an edge of the wire")
 
 
 def check_vanish():
