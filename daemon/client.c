@@ -112,15 +112,19 @@ __attribute__((format(printf, 4, 5))) static void malformed(struct client *clien
 
 /* ---- HELLO ---- */
 
-/* Names are shown in logs and in JSON: what is no printable UTF-8 is replaced. */
-static void set_name(struct client *client, const char *name)
+void client_clean_name(char *name)
 {
-	snprintf(client->name, sizeof(client->name), "%s", *name ? name : "unnamed");
-	json_t *string = json_string(client->name);
-	for (char *c = client->name; *c; c++)
+	json_t *string = json_string(name);
+	for (char *c = name; *c; c++)
 		if ((unsigned char)*c < ' ' || *c == '\x7f' || (!string && (unsigned char)*c >= 0x80))
 			*c = '?';
 	json_decref(string);
+}
+
+static void set_name(struct client *client, const char *name)
+{
+	snprintf(client->name, sizeof(client->name), "%s", *name ? name : "unnamed");
+	client_clean_name(client->name);
 }
 
 static void welcome(struct client *client, uint32_t serial)
@@ -245,11 +249,14 @@ static bool fits_client(const struct client *client, const struct pursuit_messag
 static int open_stream(struct client *client, struct refusal *refusal)
 {
 	const struct pursuit_message_open_stream *open = &client->packet->open;
+	char application[EXECUTABLE_NAME_BYTES];
+	executable_of(client->fd, client->peer.pid, application);
 	const struct stream_params params = {
 		.client_id = client->id,
 		.stream_id = open->stream_id,
 		.opened = client->opened,
 		.client_name = client->name,
+		.application = application,
 		.slot_count = open->slot_count,
 		.slot_bytes = open->slot_bytes,
 		.max_slot_bytes = (uint64_t)client->params->settings->max_frame_mb << 20,

@@ -6,6 +6,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/client.h"
 #include "daemon/keys.h"
 #include "daemon/version.h"
 
@@ -237,6 +239,36 @@ static json_t *changeable_json(const struct settings *settings)
 	return object;
 }
 
+/* Text from files and kernel, as JSON wants it. */
+static json_t *clean_string(const char *text)
+{
+	char clean[PATH_MAX];
+	snprintf(clean, sizeof(clean), "%s", text);
+	client_clean_name(clean);
+	return json_string(clean);
+}
+
+/* What the settings come from, beside command line and defaults. */
+static void add_configuration(const struct control *control, json_t *object)
+{
+	const struct reload *reload = control->params.reload;
+	const struct live *live = control->params.live;
+	const struct profile *profile = live_profile(live);
+	json_t *files = json_array(), *asked = json_array();
+	for (unsigned i = 0; i < reload->file_count; i++) {
+		char *path = realpath(reload->files[i], NULL);
+		json_array_append_new(files, clean_string(path ? path : reload->files[i]));
+		free(path);
+	}
+	for (const struct option_row *row = option_table(); row->name; row++)
+		if (live->is_asked[row - option_table()])
+			json_array_append_new(asked, json_string(row->name));
+	json_object_set_new(object, "profile", clean_string(profile ? profile->application : ""));
+	json_object_set_new(
+		object, "configuration",
+		json_pack("{s:o, s:o, s:o}", "files", files, "mistake", clean_string(reload->mistake.text), "asked", asked));
+}
+
 char *control_status_text(struct control *control)
 {
 	struct stats *stats = malloc(sizeof(*stats)); /* a quarter of a megabyte */
@@ -269,6 +301,7 @@ char *control_status_text(struct control *control)
 	if (control->params.lab)
 		json_object_set_new(object, "lab", lab_status_json(control->params.lab));
 	json_object_set_new(object, "settings", changeable_json(control->params.settings));
+	add_configuration(control, object);
 	add_recording(control, object);
 	char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(12));
 	json_decref(object);
@@ -404,6 +437,25 @@ static void on_set(struct control *control, const struct request *request)
 	reply(control, request, result, result < 0 ? error.text : "set");
 }
 
+static void on_unset(struct control *control, const struct request *request)
+{
+	struct error error = {""};
+	const bool owner = server_is_owner(control->server, request->client_id);
+	const int result = live_unset(control->params.live, request->arguments, owner, &error);
+	reply(control, request, result, result < 0 ? error.text : "unset");
+}
+
+static void on_reload(struct control *control, const struct request *request)
+{
+	struct error error = {""};
+	if (!server_is_owner(control->server, request->client_id)) {
+		reply(control, request, EPERM, "reload: for the daemon's own user or root only");
+		return;
+	}
+	const int result = reload_now(control->params.reload, "on request", &error);
+	reply(control, request, result < 0 ? result : 0, result < 0 ? error.text : "reloaded");
+}
+
 static void on_ping(struct control *control, const struct request *request)
 {
 	reply(control, request, 0, "pong");
@@ -418,6 +470,7 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 		{"status", on_status},   {"settings", on_settings}, {"timeline", on_timeline},
 		{"latency", on_latency}, {"record", on_record},     {"record-stop", on_record_stop},
 		{"ping", on_ping},       {"key", on_key},           {"set", on_set},
+		{"unset", on_unset},     {"reload", on_reload},
 	};
 	struct control *control = data;
 	const size_t length = strcspn(text, " ");
@@ -430,8 +483,8 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 	}
 	char answer[256];
 	snprintf(answer, sizeof(answer),
-			 "\"%.64s\" is no request; there are status, settings, timeline, latency, record, record-stop, set, key "
-			 "and ping",
+			 "\"%.64s\" is no request; there are status, settings, timeline, latency, record, record-stop, set, "
+			 "unset, reload, key and ping",
 			 text);
 	reply(control, &request, EINVAL, answer);
 	if (fd >= 0)

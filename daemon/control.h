@@ -19,6 +19,9 @@
  *   set NAME=VALUE ...      settings by name, all or none of them (live.h); those of
  *                           the picture from the next real frame on; others only
  *                           for the daemon's own user and root (EPERM)
+ *   unset NAME ...          takes back what was set: again as the configuration says
+ *   reload                  reads the configuration again (reload.h); only for the
+ *                           daemon's own user and root (EPERM)
  *   set focus=CLIENT        shows this client, by number or name (see status)
  *   key KEY                 as if it had been pressed in the window: one
  *                           character, or escape, f1, close; those that quit are for
@@ -37,6 +40,7 @@
 #include "daemon/loop.h"
 #include "daemon/options.h"
 #include "daemon/output.h"
+#include "daemon/reload.h"
 #include "daemon/server.h"
 
 struct control;
@@ -49,6 +53,7 @@ struct control_params {
 	struct output *output;
 	struct lab *lab; /* NULL: none */
 	struct live *live;
+	struct reload *reload;
 };
 
 /* Starts the recording that the settings ask for. NULL with a sentence. */

@@ -137,6 +137,7 @@ struct stream *stream_create(const struct stream_params *params, int control_fd,
 	stream->stream_id = params->stream_id;
 	stream->number = (params->client_id + 1) << 32 | params->opened;
 	snprintf(stream->client_name, sizeof(stream->client_name), "%s", params->client_name);
+	snprintf(stream->application, sizeof(stream->application), "%s", params->application ? params->application : "");
 	stream->wake_fd = -1;
 	stream->slot_count = params->slot_count;
 	stream->slot_bytes = params->slot_bytes;

@@ -20,6 +20,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "daemon/executable.h"
 #include "daemon/frame.h"
 #include "daemon/log.h"
 #include "daemon/refusal.h"
@@ -41,9 +42,10 @@ struct stream {
 	uint64_t stream_id; /* the client's, who may use one again */
 	uint64_t number;    /* ours, never 0, never used again: what frames say that they are of */
 	char client_name[64];
-	int wake_fd;              /* eventfd; the client writes, nobody reads */
-	_Atomic uint64_t wake_ns; /* when main saw the last wake-up */
-	atomic_bool ended;        /* nothing is taken any more */
+	char application[EXECUTABLE_NAME_BYTES]; /* name of the client's executable, as the kernel says; "": not known */
+	int wake_fd;                             /* eventfd; the client writes, nobody reads */
+	_Atomic uint64_t wake_ns;                /* when main saw the last wake-up */
+	atomic_bool ended;                       /* nothing is taken any more */
 	struct stream_counters counters;
 
 	struct pursuit_shm_control *control;
@@ -62,6 +64,7 @@ struct stream_params {
 	uint64_t stream_id;
 	uint32_t opened; /* streams that this client has opened before, whether or not they are open */
 	const char *client_name;
+	const char *application; /* NULL: not known */
 	uint32_t slot_count;
 	uint64_t slot_bytes;
 	uint64_t max_slot_bytes;

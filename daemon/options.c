@@ -187,9 +187,26 @@ static const struct option_row rows[] = {
 	{0},
 };
 
+_Static_assert(sizeof(rows) / sizeof(rows[0]) <= OPTION_ROWS, "sets of rows have a place for each");
+
 const struct option_row *option_table(void)
 {
 	return rows;
+}
+
+const struct option_row *option_find(const char *name)
+{
+	const struct option_row *row = rows;
+	while (row->name && strcmp(row->name, name) != 0)
+		row++;
+	return row->name ? row : NULL;
+}
+
+bool option_is_of_picture(const struct option_row *row)
+{
+	if (strcmp(row->name, "context") == 0 || strcmp(row->name, "gles") == 0 || strcmp(row->name, "threads") == 0)
+		return false;
+	return row->group == OPTION_ENGINE || strcmp(row->name, "governor") == 0;
 }
 
 static const struct option_row *find_row(const char *name, size_t length)
@@ -251,7 +268,7 @@ static int refuse_unknown(const char *name, struct error *error)
 
 int settings_set(struct settings *settings, const char *name, const char *value, struct error *error)
 {
-	const struct option_row *row = find_row(name, strlen(name));
+	const struct option_row *row = option_find(name);
 	return row ? option_value_set(settings, row, value, error) : refuse_unknown(name, error);
 }
 
@@ -269,59 +286,11 @@ void settings_defaults(struct settings *settings)
 
 int settings_get(const struct settings *settings, const char *name, char *value, size_t size)
 {
-	const struct option_row *row = find_row(name, strlen(name));
+	const struct option_row *row = option_find(name);
 	if (!row)
 		return -ENOENT;
 	option_value_print(settings, row, value, size);
 	return 0;
-}
-
-/* ---- configuration file ---- */
-
-static char *trim(char *text)
-{
-	char *end = text + strlen(text);
-	while (isspace((unsigned char)*text))
-		text++;
-	while (end > text && isspace((unsigned char)end[-1]))
-		*--end = 0;
-	return text;
-}
-
-static int load_line(struct settings *settings, char *line, struct error *error)
-{
-	char *name = trim(line), *equals;
-	if (!*name || *name == '#')
-		return 0;
-	equals = strchr(name, '=');
-	if (!equals)
-		return error_set(error, -EINVAL, "\"%.64s\" is not of the form name = value", name);
-	*equals = 0;
-	return settings_set(settings, trim(name), trim(equals + 1), error);
-}
-
-int settings_load(struct settings *settings, const char *path, struct error *error)
-{
-	FILE *file = fopen(path, "re");
-	char *line = NULL;
-	size_t size = 0;
-	ssize_t length;
-	int result = 0;
-	if (!file)
-		return error_set(error, -errno, "%s: %s", path, strerror(errno));
-	errno = 0;
-	for (unsigned number = 1; result == 0 && (length = getline(&line, &size, file)) >= 0; number++) {
-		struct error inner;
-		if (strlen(line) != (size_t)length)
-			result = error_set(error, -EINVAL, "%s:%u: holds a zero byte; is it a text file?", path, number);
-		else if ((result = load_line(settings, line, &inner)) < 0)
-			error_set(error, result, "%s:%u: %.400s", path, number, inner.text);
-	}
-	if (result == 0 && ferror(file))
-		result = error_set(error, errno ? -errno : -EIO, "%s: %s", path, strerror(errno ? errno : EIO));
-	free(line);
-	fclose(file);
-	return result;
 }
 
 /* ---- command line ---- */
@@ -441,22 +410,6 @@ void settings_print_help(unsigned group_mask, FILE *out)
 		fprintf(out, "  %-30s ", usage);
 		print_wrapped(row->help, 33, out);
 		fprintf(out, "  %-30s (%s; default %s)\n", "", range, *row->default_value ? row->default_value : "empty");
-	}
-}
-
-void settings_print_config(FILE *out)
-{
-	static const char *const titles[] = {"Engine", "Output", "Lab (docs/lab.md)", "Daemon"};
-	int group = -1;
-	fprintf(out, "# Settings of pursuitd, one `name = value` a line; these are the defaults.\n");
-	for (const struct option_row *row = rows; row->name; row++) {
-		char range[128];
-		if ((int)row->group != group) {
-			group = (int)row->group;
-			fprintf(out, "\n# ---- %s ----\n", titles[group]);
-		}
-		settings_describe_values(row, range, sizeof(range));
-		fprintf(out, "\n# %s\n# (%s)\n#%s = %s\n", row->help, range, row->name, row->default_value);
 	}
 }
 

@@ -3,8 +3,8 @@
 
 /*
  * Every setting once: one row carries name, type, default, range, unit and
- * prose, and help text, configuration file, command line and (later) man page
- * and live settings come from it. pursuitd uses all rows; verbs of the command
+ * prose, and help text, configuration file (configuration.h), command line, man
+ * page and live settings come from it. pursuitd uses all rows; verbs of the command
  * that run an engine themselves (replay, report) use those of OPTION_ENGINE.
  */
 #ifndef PURSUIT_OPTIONS_H
@@ -102,8 +102,17 @@ struct option_row {
 	const char *help;           /* one or two sentences */
 };
 
+/* The table has at most so many rows: a set of them is an array of flags, by their place. */
+#define OPTION_ROWS 128u
+
 /* The table, ended by a row without name. Static. */
 const struct option_row *option_table(void);
+
+/* NULL: there is no such row. Static. */
+const struct option_row *option_find(const char *name);
+
+/* Does the picture alone depend on it, so that it may change from one real frame to the next? */
+bool option_is_of_picture(const struct option_row *row);
 
 void settings_defaults(struct settings *settings);
 
@@ -119,9 +128,6 @@ int settings_get(const struct settings *settings, const char *name, char *value,
 /* What may be written, for a person: "yes or no", "4 to 64 px". Truncates. */
 void settings_describe_values(const struct option_row *row, char *text, size_t size);
 
-/* Reads a file of `name = value` lines; lines that start with # are comments. Errors name file and line. */
-int settings_load(struct settings *settings, const char *path, struct error *error);
-
 /*
  * Takes "--name value" or "--name=value" at argv[*index] if `name` is a row of
  * one of the groups in the mask (1 << group): 1 taken (*index now at the last
@@ -130,9 +136,8 @@ int settings_load(struct settings *settings, const char *path, struct error *err
 int settings_argument(struct settings *settings, unsigned group_mask, int argc, char **argv, int *index,
 					  struct error *error);
 
-/* Help lines of the rows of these groups; the commented default configuration file. */
+/* Help lines of the rows of these groups. */
 void settings_print_help(unsigned group_mask, FILE *out);
-void settings_print_config(FILE *out);
 
 /*
  * The rows of these groups for programs, from which man pages and shell completions are made: a line each,

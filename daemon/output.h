@@ -53,6 +53,12 @@ struct output_params {
 	struct clock *clock;
 	const struct log *log;
 	struct lab *lab; /* NULL: none; outlives the output */
+	/*
+	 * On main, before another application ("": none, or not known) comes to be shown: the settings that its frames are
+	 * made with, all of them, or NULL: as before. NULL: never asked.
+	 */
+	const struct settings *(*shown)(void *data, const char *application);
+	void *data;
 };
 
 struct output_info {

@@ -11,6 +11,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "daemon/arguments.h"
 #include "daemon/clock.h"
 #include "daemon/control.h"
 #include "daemon/keyboard.h"
@@ -23,11 +24,11 @@
 #include "daemon/options.h"
 #include "daemon/output.h"
 #include "daemon/present/presenter.h"
+#include "daemon/reload.h"
 #include "daemon/seccomp.h"
 #include "daemon/server.h"
 #include "daemon/version.h"
 
-#define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_LAB | 1u << OPTION_DAEMON)
 #define EXIT_USAGE 2
 #define DAEMON_NICE (-3)
 
@@ -39,12 +40,11 @@ struct pursuitd {
 	struct lab *lab; /* NULL unless an option of the lab is set */
 	struct output *output;
 	struct live live;
+	struct reload reload;
 	struct control *control;
 	struct server *server;
 	struct keyboard keyboard;
 	struct watchdog *watchdog;
-	int argc;
-	char **argv;
 };
 
 /* ---- the command line ---- */
@@ -73,84 +73,53 @@ static void print_help(void)
 			printf("  %-16s %s\n", (*impl)->name, (*impl)->description);
 }
 
-/* "--config FILE" and "--config=FILE": 1 taken, 0 not it, -1 refused with a sentence. */
-static int take_config(struct settings *settings, int argc, char **argv, int *index, struct error *error)
+static void print_config(void)
 {
-	const char *path;
-	if (strncmp(argv[*index], "--config=", 9) == 0) {
-		path = argv[*index] + 9;
-	} else if (strcmp(argv[*index], "--config") == 0) {
-		if (*index + 1 >= argc) {
-			error_set(error, -EINVAL, "--config needs a file");
-			return -1;
-		}
-		path = argv[++*index];
-	} else {
-		return 0;
-	}
-	return settings_load(settings, path, error) < 0 ? -1 : 1;
+	configuration_print(stdout);
 }
 
-static int refuse_argument(const char *argument)
+/* For the programs that make man page and completions. */
+static void print_options(void)
 {
-	char sentence[256], name[64];
-	const char *nearest = NULL;
-	if (strncmp(argument, "--", 2) == 0) {
-		snprintf(name, sizeof(name), "%.*s", (int)strcspn(argument + 2, "="), argument + 2);
-		nearest = settings_nearest(name);
-	}
-	snprintf(sentence, sizeof(sentence), "%.100s: there is no such option%s%s%s", argument,
-			 nearest ? "; did you mean --" : "", nearest ? nearest : "", nearest ? "?" : "");
-	return usage_error(sentence);
+	settings_print_options(ALL_GROUPS, stdout);
 }
 
-/* -1 to go on, otherwise an exit status. */
-static int read_arguments(struct settings *settings, int argc, char **argv)
+static void print_version(void)
 {
-	struct error error = {""};
+	printf("pursuitd %s\n", PURSUITD_VERSION);
+}
+
+/* Is there an argument that asks for text and nothing else? */
+static bool tell(int argc, char **argv)
+{
+	static const struct {
+		const char *name;
+		void (*print)(void);
+	} texts[] = {
+		{"--help", print_help},
+		{"-h", print_help},
+		{"--version", print_version},
+		{"--print-config", print_config},
+		{"--print-options", print_options},
+	};
 	for (int i = 1; i < argc; i++) {
-		if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-			print_help();
-			return 0;
+		for (size_t j = 0; j < sizeof(texts) / sizeof(texts[0]); j++) {
+			if (strcmp(argv[i], texts[j].name) == 0) {
+				texts[j].print();
+				return true;
+			}
 		}
-		if (strcmp(argv[i], "--version") == 0) {
-			printf("pursuitd %s\n", PURSUITD_VERSION);
-			return 0;
-		}
-		if (strcmp(argv[i], "--print-config") == 0) {
-			settings_print_config(stdout);
-			return 0;
-		}
-		if (strcmp(argv[i], "--print-options") == 0) { /* for the programs that make man page and completions */
-			settings_print_options(ALL_GROUPS, stdout);
-			return 0;
-		}
-		int taken = take_config(settings, argc, argv, &i, &error);
-		if (taken == 0)
-			taken = settings_argument(settings, ALL_GROUPS, argc, argv, &i, &error);
-		if (taken < 0)
-			return usage_error(error.text);
-		if (taken == 0)
-			return refuse_argument(argv[i]);
 	}
-	/* Users that there are not would lock out whom they were meant to let in. */
-	if (live_check(settings, &error) < 0 || presenter_check_list(settings->present, &error) < 0)
-		return usage_error(error.text);
-	return -1;
+	return false;
 }
 
 /* ---- running ---- */
 
-/* Command line and files again; with a mistake in them all stays as it is. */
 static void reload(struct pursuitd *daemon)
 {
-	struct settings fresh;
+	struct error error;
 	notify_reloading(&daemon->log);
-	settings_defaults(&fresh);
-	if (read_arguments(&fresh, daemon->argc, daemon->argv) >= 0)
-		log_error(&daemon->log, "SIGHUP: the settings stay as they are");
-	else
-		log_info(&daemon->log, "SIGHUP: settings read again, %u changed", live_reload(&daemon->live, &fresh));
+	reload_now(&daemon->reload, "SIGHUP", &error);
 	notify_ready(&daemon->log);
 }
 
@@ -229,13 +198,13 @@ static int start(struct pursuitd *daemon, struct error *error)
 	if (lab_is_wanted(&daemon->settings.lab) && start_lab(daemon, error) < 0)
 		return -1;
 	const struct output_params output_params = {daemon->loop, &daemon->settings, &daemon->clock, &daemon->log,
-												daemon->lab};
+												daemon->lab,  live_show,         &daemon->live};
 	daemon->output = output_create(&output_params, error);
 	if (!daemon->output)
 		return -1;
-	daemon->live = (struct live){&daemon->settings, daemon->output, &daemon->log};
+	daemon->live.output = daemon->output;
 	const struct control_params control_params = {daemon->loop,   &daemon->log, &daemon->clock, &daemon->settings,
-												  daemon->output, daemon->lab,  &daemon->live};
+												  daemon->output, daemon->lab,  &daemon->live,  &daemon->reload};
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
 		return -1;
@@ -249,6 +218,7 @@ static int start(struct pursuitd *daemon, struct error *error)
 		return -1;
 	control_set_server(daemon->control, daemon->server);
 	daemon->keyboard.server = daemon->server;
+	reload_watch(&daemon->reload, daemon->loop);
 	if (watchdog_create(&daemon->watchdog, daemon->loop, &daemon->log, daemon->output, error) < 0)
 		return -1;
 	return daemon->settings.seccomp ? seccomp_apply(error) : 0;
@@ -308,20 +278,28 @@ static void stop(struct pursuitd *daemon)
 	control_destroy(&daemon->control);
 	output_destroy(&daemon->output);
 	lab_destroy(&daemon->lab);
+	reload_finish(&daemon->reload);
+	live_finish(&daemon->live);
 	loop_destroy(&daemon->loop);
 }
 
 int main(int argc, char **argv)
 {
-	struct pursuitd daemon = {.argc = argc, .argv = argv};
+	struct pursuitd daemon = {0};
+	struct arguments arguments;
 	struct error error = {""};
 	int status;
 
-	settings_defaults(&daemon.settings);
-	status = read_arguments(&daemon.settings, argc, argv);
-	if (status >= 0)
-		return status;
+	if (tell(argc, argv))
+		return 0;
+	if (arguments_read(&arguments, argc, argv, &error) < 0) {
+		arguments_finish(&arguments);
+		return usage_error(error.text);
+	}
+	daemon.settings = arguments.settings;
 	log_init(&daemon.log, (enum log_level)daemon.settings.log_level);
+	live_init(&daemon.live, &daemon.settings, &arguments.profiles, &daemon.log);
+	reload_init(&daemon.reload, &daemon.live, &daemon.log, &arguments, argc, argv);
 	status = 0;
 	if (start(&daemon, &error) < 0) {
 		log_error(&daemon.log, "%s", error.text);

@@ -343,13 +343,17 @@ static json_t *stream_json(const struct server *server, const struct client *cli
 	uint64_t shown_client = 0, shown_stream = 0;
 	output_get_shown(server->params.output, &shown_client, &shown_stream);
 	struct stream_counters *c = &stream->counters;
+	char application[EXECUTABLE_NAME_BYTES];
+	snprintf(application, sizeof(application), "%s", stream->application);
+	client_clean_name(application);
 	const uint64_t interval_ns = atomic_load(&c->interval_ns);
-	return json_pack("{s:I, s:I, s:b, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id",
+	return json_pack("{s:I, s:I, s:b, s:s, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id",
 					 (json_int_t)stream->stream_id, "client_id", (json_int_t)client->id, "shown",
 					 (int)(shown_client == client->id && shown_stream == stream->stream_id), "client", client->name,
-					 "pid", (int)client->peer.pid, "uid", (int)client->peer.uid, "width", (int)atomic_load(&c->width),
-					 "height", (int)atomic_load(&c->height), "frame_id", (json_int_t)atomic_load(&c->last_frame_id),
-					 "real_frames", (json_int_t)atomic_load(&c->real_frames), "refused_frames",
+					 "application", application, "pid", (int)client->peer.pid, "uid", (int)client->peer.uid, "width",
+					 (int)atomic_load(&c->width), "height", (int)atomic_load(&c->height), "frame_id",
+					 (json_int_t)atomic_load(&c->last_frame_id), "real_frames",
+					 (json_int_t)atomic_load(&c->real_frames), "refused_frames",
 					 (json_int_t)atomic_load(&c->refused_frames), "lost_real_frames",
 					 (json_int_t)atomic_load(&c->lost_frames), "fps", interval_ns ? 1e9 / (double)interval_ns : 0.0);
 }

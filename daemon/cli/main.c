@@ -30,6 +30,7 @@ static const struct verb verbs[] = {
 	{"top", verb_top, "show live what a running daemon does"},
 	{"get", verb_get, "print the settings of a running daemon"},
 	{"set", verb_set, "change settings of a running daemon"},
+	{"profile", verb_profile, "settings of one application, by the name of its executable"},
 	{"status", verb_status, "say what a running daemon does"},
 	{NULL, NULL, NULL},
 };

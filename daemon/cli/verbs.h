@@ -15,6 +15,7 @@ int verb_export(int argc, char **argv);
 int verb_get(int argc, char **argv);
 int verb_import(int argc, char **argv);
 int verb_latency(int argc, char **argv);
+int verb_profile(int argc, char **argv);
 int verb_record(int argc, char **argv);
 int verb_replay(int argc, char **argv);
 int verb_report(int argc, char **argv);

@@ -6,7 +6,7 @@
 #include <errno.h>
 #include <unistd.h>
 
-#include "daemon/options.h"
+#include "daemon/configuration.h"
 #include "tests/test.h"
 
 static void test_table(void)
@@ -117,6 +117,14 @@ static const char *file_with(const char *text)
 	return path;
 }
 
+static int load(struct settings *settings, const char *path, struct error *error)
+{
+	struct profiles profiles = {NULL, 0};
+	const int result = configuration_load(settings, &profiles, path, NULL, error);
+	profiles_finish(&profiles);
+	return result;
+}
+
 static void test_config_round_trip(void)
 {
 	struct settings defaults, loaded;
@@ -124,7 +132,7 @@ static void test_config_round_trip(void)
 	char *text = NULL;
 	size_t size = 0, rows = 0;
 	FILE *out = open_memstream(&text, &size);
-	settings_print_config(out);
+	configuration_print(out);
 	fclose(out);
 	settings_defaults(&defaults);
 	memset(&loaded, 0, sizeof(loaded));
@@ -133,7 +141,7 @@ static void test_config_round_trip(void)
 		if (line[0] != '#' || line[1] == ' ')
 			continue;
 		const char *path = file_with(line + 1); /* a commented default, uncommented */
-		CHECK_INT(settings_load(&loaded, path, &error), 0);
+		CHECK_INT(load(&loaded, path, &error), 0);
 		unlink(path);
 		rows++;
 	}
@@ -149,7 +157,7 @@ static void test_config_errors(void)
 	char want[600];
 	settings_defaults(&settings);
 	const char *path = file_with("# a comment\n\n  cell = 16  \n\tgles=yes\nmethod = hold\nblur-level = 9\n");
-	CHECK_INT(settings_load(&settings, path, &error), -EINVAL);
+	CHECK_INT(load(&settings, path, &error), -EINVAL);
 	snprintf(want, sizeof(want), "%s:6: blur-level: 9 is above 6", path);
 	CHECK_STRING(error.text, want);
 	CHECK_INT(settings.cell, 16);
@@ -157,13 +165,13 @@ static void test_config_errors(void)
 	CHECK_STRING(settings.method, "hold");
 	unlink(path);
 	path = file_with("cell 16\n");
-	CHECK_INT(settings_load(&settings, path, &error), -EINVAL);
+	CHECK_INT(load(&settings, path, &error), -EINVAL);
 	snprintf(want, sizeof(want), "%s:1: \"cell 16\" is not of the form name = value", path);
 	CHECK_STRING(error.text, want);
 	unlink(path);
-	CHECK_INT(settings_load(&settings, "/nonexistent/pursuit.conf", &error), -ENOENT);
+	CHECK_INT(load(&settings, "/nonexistent/pursuit.conf", &error), -ENOENT);
 	CHECK_STRING(error.text, "/nonexistent/pursuit.conf: No such file or directory");
-	CHECK(settings_load(&settings, "/tmp", &error) < 0);
+	CHECK(load(&settings, "/tmp", &error) < 0);
 }
 
 static int take(struct settings *settings, unsigned mask, char *a, char *b, int *used, struct error *error)

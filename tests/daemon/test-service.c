@@ -189,7 +189,7 @@ static void test_reload(void)
 	/* A mistake changes nothing, and ends nothing. */
 	write_config("max-clients = 1\nnonsense = 5\n");
 	kill(fixture.pid, SIGHUP);
-	CHECK(fixture_logged(&fixture, "SIGHUP: the settings stay as they are"));
+	CHECK(fixture_logged(&fixture, "config:2: nonsense: there is no such setting; the settings stay as they are"));
 	play(&stream, 3);
 	CHECK_INT(figure(fd, "lost_real_frames"), 0);
 	CHECK_INT(figure(fd, "refused_frames"), 0);

@@ -186,6 +186,8 @@ struct world {
 	struct clock clock;
 	struct loop *loop;
 	struct output *output;
+	struct live live;
+	struct reload reload;
 	struct control *control;
 	struct server *server;
 };
@@ -196,8 +198,18 @@ static bool create(struct world *world)
 	world->loop = loop_create(&error);
 	if (!world->loop)
 		return false;
-	const struct control_params control_params = {
-		.loop = world->loop, .clock = &world->clock, .settings = &world->settings, .output = world->output};
+	struct arguments arguments;
+	char *argv[] = {NULL};
+	if (arguments_read(&arguments, 0, argv, &error) < 0)
+		return false;
+	live_init(&world->live, &world->settings, &arguments.profiles, NULL);
+	reload_init(&world->reload, &world->live, NULL, &arguments, 0, argv);
+	const struct control_params control_params = {.loop = world->loop,
+												  .clock = &world->clock,
+												  .settings = &world->settings,
+												  .output = world->output,
+												  .live = &world->live,
+												  .reload = &world->reload};
 	world->control = control_create(&control_params, &error);
 	if (!world->control)
 		return false;
@@ -284,6 +296,7 @@ static bool run_server(void)
 		control_set_server(world.control, NULL);
 	server_destroy(&world.server);
 	control_destroy(&world.control);
+	live_finish(&world.live);
 	fake_output_destroy(&world.output);
 	loop_destroy(&world.loop);
 	return served;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "daemon/options.h"
+#include "daemon/configuration.h"
 #include "daemon/record/pattern.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -36,13 +36,17 @@ static void check_round_trip(const struct settings *settings)
 static void load_file(const struct fuzz_input *input)
 {
 	struct settings settings;
+	struct profiles profiles = {NULL, 0};
 	struct fuzz_file file;
 	struct error error = {""};
 	settings_defaults(&settings);
 	fuzz_file_init(&file, input->data, input->size);
-	FUZZ_EXPECT(settings_load(&settings, file.path, &error) == 0 || error.text[0]);
+	FUZZ_EXPECT(configuration_load(&settings, &profiles, file.path, NULL, &error) == 0 || error.text[0]);
 	fuzz_file_finish(&file);
 	check_round_trip(&settings);
+	for (size_t i = 0; i < profiles.count && i < 4; i++)
+		check_round_trip(&profiles.list[i].values);
+	profiles_finish(&profiles);
 }
 
 /* Zero bytes part the text into arguments; gives how many. */

@@ -26,6 +26,8 @@ struct world {
 	struct clock_virtual clock;
 	struct loop *loop;
 	struct output *output;
+	struct live live;
+	struct reload reload;
 	struct control *control;
 	struct server *server;
 	struct talker talkers[TALKERS];
@@ -50,8 +52,17 @@ static void create(struct world *world)
 	clock_init_virtual(&world->clock, 1000000000);
 	world->loop = loop_create(&error);
 	world->output = fake_output_create(&world->clock.clock);
-	const struct control_params control_params = {
-		.loop = world->loop, .clock = &world->clock.clock, .settings = &world->settings, .output = world->output};
+	struct arguments arguments;
+	char *argv[] = {NULL};
+	FUZZ_EXPECT(arguments_read(&arguments, 0, argv, &error) == 0);
+	live_init(&world->live, &world->settings, &arguments.profiles, NULL);
+	reload_init(&world->reload, &world->live, NULL, &arguments, 0, argv);
+	const struct control_params control_params = {.loop = world->loop,
+												  .clock = &world->clock.clock,
+												  .settings = &world->settings,
+												  .output = world->output,
+												  .live = &world->live,
+												  .reload = &world->reload};
 	world->control = control_create(&control_params, &error);
 	const struct server_params server_params = {.loop = world->loop,
 												.clock = &world->clock.clock,
@@ -86,6 +97,8 @@ static void destroy(struct world *world, bool clients_first)
 	control_set_server(world->control, NULL);
 	server_destroy(&world->server);
 	control_destroy(&world->control);
+	reload_finish(&world->reload);
+	live_finish(&world->live);
 	fake_output_destroy(&world->output);
 	loop_destroy(&world->loop);
 	for (int i = 0; i < TALKERS; i++)

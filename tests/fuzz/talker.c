@@ -241,6 +241,7 @@ static void send_request(struct talker *talker, struct fuzz_input *input)
 	static const char *const known[] = {
 		"status",       "settings",     "timeline 0 5", "timeline", "record", "record-stop",
 		"timeline x y", "timeline 1 9", "ping",         "record x", "",       "pingpong"};
+	static const char *const changing[] = {"set cell=9", "set cell=9 blur=x", "unset cell", "unset", "reload", "set"};
 	struct {
 		struct pursuit_message_control header;
 		char text[256];
@@ -248,8 +249,9 @@ static void send_request(struct talker *talker, struct fuzz_input *input)
 	const uint8_t choice = fuzz_u8(input), fd_kind = fuzz_u8(input);
 	size_t length;
 	if (choice < 128) {
-		length = strlen(known[choice % 12]);
-		memcpy(packet.text, known[choice % 12], length);
+		const char *text = choice < 116 ? known[choice % 12] : changing[choice % 6];
+		length = strlen(text);
+		memcpy(packet.text, text, length);
 	} else {
 		const uint8_t *text = fuzz_bytes(input, fuzz_u8(input), &length);
 		memcpy(packet.text, text, length);

@@ -75,6 +75,9 @@ int soak_daemon(struct soak *soak)
 	struct clock clock;
 	struct log log;
 	struct error error = {""};
+	struct profiles profiles = {NULL, 0};
+	struct live live;
+	struct reload reload = {.watch_fd = -1, .timer_fd = -1};
 	struct output *output = NULL;
 	struct control *control = NULL;
 	struct server *server = NULL;
@@ -85,6 +88,7 @@ int soak_daemon(struct soak *soak)
 	settings_set(&settings, "method", "hold", &error);
 	settings_set(&settings, "socket", soak->socket, &error);
 	log_init(&log, LOG_LEVEL_ERROR);
+	live_init(&live, &settings, &profiles, &log);
 	clock_init_real(&clock);
 	struct loop *loop = loop_create(&error);
 	if (loop && loop_add_signals(loop, signals, 1, on_signal, loop, &error) == 0) {
@@ -92,8 +96,14 @@ int soak_daemon(struct soak *soak)
 		output = output_create(&output_params, &error);
 	}
 	if (output) {
-		const struct control_params params = {
-			.loop = loop, .log = &log, .clock = &clock, .settings = &settings, .output = output};
+		live.output = output;
+		const struct control_params params = {.loop = loop,
+											  .log = &log,
+											  .clock = &clock,
+											  .settings = &settings,
+											  .output = output,
+											  .live = &live,
+											  .reload = &reload};
 		control = control_create(&params, &error);
 	}
 	if (control) {

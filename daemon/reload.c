@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/reload.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/inotify.h>
+#include <sys/stat.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+/* After the last change of a burst, but not later than this after its first one. */
+#define QUIET_NS UINT64_C(100000000)
+#define LONGEST_NS UINT64_C(1000000000)
+
+#define CHANGES (IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_CREATE | IN_ONLYDIR)
+
+/* ---- places ---- */
+
+static void add_place(struct reload *reload, const char *path)
+{
+	char folder[PATH_MAX];
+	const char *slash = strrchr(path, '/');
+	const char *name = slash ? slash + 1 : path;
+	const int length = slash ? (int)(slash - path) + 1 : 2;
+	if (reload->place_count == RELOAD_PLACES || strlen(name) > NAME_MAX || length >= PATH_MAX)
+		return;
+	snprintf(folder, sizeof(folder), "%.*s", length, slash ? path : "./");
+	struct reload_place *place = &reload->places[reload->place_count++];
+	snprintf(place->name, sizeof(place->name), "%s", name);
+	place->watch = inotify_add_watch(reload->watch_fd, folder, CHANGES);
+	if (place->watch < 0)
+		log_warning(reload->log, "%s: changes are not noticed (%s); SIGHUP has it read again", path, strerror(errno));
+}
+
+/* Links may lead elsewhere by now, folders may have come: at each reading anew. The kernel knows watches it has. */
+static void watch_files(struct reload *reload)
+{
+	reload->place_count = 0;
+	for (unsigned i = 0; i < reload->file_count; i++) {
+		char *real = realpath(reload->files[i], NULL);
+		add_place(reload, reload->files[i]);
+		if (real && strcmp(real, reload->files[i]) != 0)
+			add_place(reload, real);
+		free(real);
+	}
+}
+
+/* A file that was just made is still being written; a link is whole at once. */
+static bool is_whole(const struct reload *reload, const struct inotify_event *event)
+{
+	struct stat file;
+	if (!(event->mask & IN_CREATE))
+		return true;
+	for (unsigned i = 0; i < reload->file_count; i++)
+		if (lstat(reload->files[i], &file) == 0 && (S_ISLNK(file.st_mode) || file.st_nlink > 1))
+			return true;
+	return false;
+}
+
+static bool concerns_us(const struct reload *reload, const struct inotify_event *event)
+{
+	if (event->mask & IN_Q_OVERFLOW)
+		return true;
+	for (unsigned i = 0; i < reload->place_count && event->len > 0; i++)
+		if (reload->places[i].watch == event->wd && strcmp(reload->places[i].name, event->name) == 0)
+			return is_whole(reload, event);
+	return false;
+}
+
+/* ---- events ---- */
+
+static uint64_t now_ns(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
+}
+
+static void set_timer(struct reload *reload)
+{
+	const uint64_t now = now_ns();
+	reload->first_ns = reload->first_ns ? reload->first_ns : now;
+	const uint64_t latest = reload->first_ns + LONGEST_NS, wished = now + QUIET_NS;
+	const uint64_t then = wished < latest ? wished : latest;
+	const struct itimerspec timer = {
+		.it_value = {(time_t)(then / UINT64_C(1000000000)), (long)(then % UINT64_C(1000000000))}};
+	timerfd_settime(reload->timer_fd, TFD_TIMER_ABSTIME, &timer, NULL);
+}
+
+static void on_change(void *data, uint32_t events)
+{
+	struct reload *reload = data;
+	_Alignas(struct inotify_event) char buffer[4096];
+	bool changed = false;
+	(void)events;
+	for (ssize_t got; (got = read(reload->watch_fd, buffer, sizeof(buffer))) > 0;) {
+		const struct inotify_event *event;
+		for (ssize_t at = 0; at < got; at += (ssize_t)(sizeof(*event) + event->len)) {
+			event = (const struct inotify_event *)(const void *)(buffer + at);
+			changed |= concerns_us(reload, event);
+		}
+	}
+	if (changed)
+		set_timer(reload);
+}
+
+static void on_timer(void *data, uint32_t events)
+{
+	struct reload *reload = data;
+	struct error error;
+	uint64_t count;
+	(void)events;
+	if (read(reload->timer_fd, &count, sizeof(count)) < 0)
+		return;
+	reload_now(reload, "the configuration has changed", &error);
+}
+
+/* ---- life ---- */
+
+void reload_init(struct reload *reload, struct live *live, struct log *log, const struct arguments *arguments, int argc,
+				 char **argv)
+{
+	*reload = (struct reload){.live = live, .log = log, .argc = argc, .argv = argv, .watch_fd = -1, .timer_fd = -1};
+	memcpy(reload->files, arguments->files, sizeof(reload->files));
+	reload->file_count = arguments->file_count;
+}
+
+void reload_watch(struct reload *reload, struct loop *loop)
+{
+	if (reload->file_count == 0)
+		return;
+	reload->watch_fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+	reload->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+	if (reload->watch_fd >= 0 && reload->timer_fd >= 0) {
+		reload->watch_source = loop_add(loop, reload->watch_fd, EPOLLIN, on_change, reload);
+		reload->timer_source = loop_add(loop, reload->timer_fd, EPOLLIN, on_timer, reload);
+	}
+	if (!reload->watch_source || !reload->timer_source)
+		log_warning(reload->log, "changes of the configuration are not noticed (%s); SIGHUP has it read again",
+					strerror(errno));
+	else
+		watch_files(reload);
+}
+
+void reload_finish(struct reload *reload)
+{
+	loop_remove(&reload->watch_source);
+	loop_remove(&reload->timer_source);
+	if (reload->watch_fd >= 0)
+		close(reload->watch_fd);
+	if (reload->timer_fd >= 0)
+		close(reload->timer_fd);
+	reload->watch_fd = reload->timer_fd = -1;
+}
+
+int reload_now(struct reload *reload, const char *why, struct error *error)
+{
+	struct arguments fresh;
+	reload->first_ns = 0;
+	if (reload->timer_source)
+		watch_files(reload);
+	int result = arguments_read(&fresh, reload->argc, reload->argv, error);
+	if (result < 0) {
+		log_error(reload->log, "%s: %s; the settings stay as they are", why, error->text);
+		reload->mistake = *error;
+	} else {
+		result = (int)live_reload(reload->live, &fresh.settings, &fresh.profiles);
+		log_info(reload->log, "%s: settings read again, %d changed", why, result);
+		reload->mistake.text[0] = 0;
+	}
+	arguments_finish(&fresh);
+	return result;
+}

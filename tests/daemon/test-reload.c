@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The configuration file changed by hand, in all the ways that editors and
+ * packages do it, while frames come: what is right counts, what is wrong is
+ * told with its line and changes nothing, and no frame is lost.
+ */
+
+#include <jansson.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/daemon/fixture.h"
+#include "tests/daemon/raw-client.h"
+
+static struct fixture fixture;
+static struct raw_reply reply;
+static struct raw_stream stream;
+static char config[128], other[128], target[128];
+static int fd;
+
+static void write_file(const char *path, const char *text)
+{
+	FILE *file = fopen(path, "w");
+	CHECK(file && fputs(text, file) >= 0);
+	if (file)
+		fclose(file);
+}
+
+static void play(int frames)
+{
+	struct pursuit_feedback report;
+	for (int i = 0; i < frames; i++) {
+		raw_fill(&stream);
+		raw_publish(&stream);
+		CHECK(raw_feedback(&stream, &report));
+		CHECK_INT(report.state, PURSUIT_FEEDBACK_SHOWN);
+	}
+}
+
+static bool setting_is(const char *line)
+{
+	CHECK_INT(raw_control(fd, "settings", -1, &reply), 0);
+	return strstr((const char *)reply.raw + sizeof(reply.control), line) != NULL;
+}
+
+/* Frames go on meanwhile. */
+static bool setting_comes(const char *line)
+{
+	for (int i = 0; i < 1000; i++) {
+		if (setting_is(line))
+			return true;
+		play(1);
+	}
+	return false;
+}
+
+/* So long after a change that it would have been noticed. */
+static void pass_time(void)
+{
+	const uint64_t end_ns = now_ns() + UINT64_C(400000000);
+	while (now_ns() < end_ns)
+		play(1);
+}
+
+static unsigned readings(void)
+{
+	static char content[1 << 20];
+	FILE *file = fopen(fixture.log, "r");
+	const size_t length = file ? fread(content, 1, sizeof(content) - 1, file) : 0;
+	unsigned count = 0;
+	if (file)
+		fclose(file);
+	content[length] = 0;
+	for (const char *at = content; (at = strstr(at, "settings read again")); at++)
+		count++;
+	return count;
+}
+
+static void test_in_place(void)
+{
+	write_file(config, "cell = 16\n");
+	CHECK(setting_comes("\ncell = 16\n"));
+}
+
+static void test_replaced(void)
+{
+	write_file(other, "cell = 20\n");
+	CHECK(rename(other, config) == 0);
+	CHECK(setting_comes("\ncell = 20\n"));
+	write_file(config, "cell = 21\n"); /* and the new one in place */
+	CHECK(setting_comes("\ncell = 21\n"));
+}
+
+static void test_half_written(void)
+{
+	char want[256];
+	write_file(config, "cell = 40\nblur-le");
+	snprintf(want, sizeof(want), "%s:2: \"blur-le\" is not of the form name = value; the settings stay as they are",
+			 config);
+	CHECK(fixture_logged(&fixture, want));
+	CHECK(setting_is("\ncell = 21\n"));
+	write_file(config, "cell = 41\nblur-level = 3\n");
+	CHECK(setting_comes("\ncell = 41\n") && setting_is("\nblur-level = 3\n"));
+}
+
+/* A file that is open for writing is not read, even if it is empty for a while. */
+static void test_slow_writer(void)
+{
+	FILE *file = fopen(config, "w");
+	pass_time();
+	CHECK(setting_is("\ncell = 41\n"));
+	CHECK(fputs("cell = 42\n", file) >= 0 && fflush(file) == 0);
+	pass_time();
+	CHECK(setting_is("\ncell = 41\n"));
+	CHECK(fclose(file) == 0);
+	CHECK(setting_comes("\ncell = 42\n"));
+}
+
+static void test_deleted(void)
+{
+	CHECK(unlink(config) == 0);
+	CHECK(fixture_logged(&fixture, "No such file or directory; the settings stay as they are"));
+	CHECK(setting_is("\ncell = 42\n"));
+	write_file(config, "cell = 43\n");
+	CHECK(setting_comes("\ncell = 43\n"));
+}
+
+static void test_burst(void)
+{
+	const unsigned before = readings();
+	char text[32];
+	for (int i = 0; i < 200; i++) {
+		snprintf(text, sizeof(text), "cell = %d\n", 10 + i % 40);
+		write_file(config, text);
+	}
+	write_file(config, "cell = 60\n");
+	CHECK(setting_comes("\ncell = 60\n"));
+	CHECK(readings() - before < 20);
+}
+
+/* A link that is switched to another file, and that file changed. */
+static void test_link(void)
+{
+	write_file(target, "cell = 61\n");
+	CHECK(symlink("folder/target", other) == 0 && rename(other, config) == 0);
+	CHECK(setting_comes("\ncell = 61\n"));
+	write_file(target, "cell = 62\n");
+	CHECK(setting_comes("\ncell = 62\n"));
+	CHECK(unlink(config) == 0);
+	write_file(config, "cell = 63\n");
+	CHECK(setting_comes("\ncell = 63\n"));
+}
+
+/* What was asked for stays through a reading, and the log says so. */
+static void test_asked_stays(void)
+{
+	CHECK_INT(raw_control(fd, "set cell=50", -1, &reply), 0);
+	write_file(config, "cell = 12\nblur = off\n");
+	CHECK(setting_comes("\nblur = off\n"));
+	CHECK(setting_is("\ncell = 50\n"));
+	CHECK(fixture_logged(&fixture, "cell is 12 now in the configuration; it stays 50, as `pursuit set` asked for"));
+	CHECK_INT(raw_control(fd, "unset cell", -1, &reply), 0);
+	CHECK(setting_is("\ncell = 12\n"));
+}
+
+static void test_signal(void)
+{
+	const unsigned before = readings();
+	kill(fixture.pid, SIGHUP);
+	CHECK(fixture_logged(&fixture, "SIGHUP: settings read again"));
+	CHECK(readings() > before);
+}
+
+static json_int_t figure(const char *name)
+{
+	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
+	json_t *all = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
+	const json_int_t value = json_integer_value(json_object_get(all, name));
+	json_decref(all);
+	return value;
+}
+
+/* A file that need not be there, and comes later. */
+static void test_missing(void)
+{
+	char minus[160];
+	const char *const wrong[] = {"--config", other, NULL}, *const right[] = {"--config", minus, NULL};
+	snprintf(minus, sizeof(minus), "-%s", other);
+	fixture_spawn(&fixture, wrong);
+	CHECK_INT(fixture_join(&fixture), 2);
+	fixture_start(&fixture, right);
+	fd = raw_greet(fixture.socket);
+	CHECK(setting_is("\ncell = 8\n"));
+	write_file(other, "cell = 33\n");
+	for (int i = 0; i < 500 && !setting_is("\ncell = 33\n"); i++)
+		sleep_ms(20);
+	CHECK(setting_is("\ncell = 33\n"));
+	close(fd);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+int main(int argc, char **argv)
+{
+	const char *const arguments[] = {"--config", config, NULL};
+	char folder[128];
+	if (argc < 2)
+		return 2;
+	signal(SIGPIPE, SIG_IGN);
+	fixture_init(&fixture, argv[1]);
+	snprintf(config, sizeof(config), "%s/config", fixture.folder);
+	snprintf(other, sizeof(other), "%s/other", fixture.folder);
+	snprintf(folder, sizeof(folder), "%s/folder", fixture.folder);
+	snprintf(target, sizeof(target), "%s/folder/target", fixture.folder);
+	CHECK(mkdir(folder, 0700) == 0);
+	write_file(config, "cell = 9\n");
+	fixture_start(&fixture, arguments);
+	fd = raw_greet(fixture.socket);
+	raw_stream_init(&stream, fd, 1);
+	CHECK(raw_stream_open(&stream, &reply));
+	RUN(test_in_place);
+	RUN(test_replaced);
+	RUN(test_half_written);
+	RUN(test_slow_writer);
+	RUN(test_deleted);
+	RUN(test_burst);
+	RUN(test_link);
+	RUN(test_asked_stays);
+	RUN(test_signal);
+	CHECK_INT(figure("lost_real_frames"), 0);
+	CHECK_INT(figure("refused_frames"), 0);
+	raw_stream_finish(&stream);
+	close(fd);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+	RUN(test_missing);
+	fixture_finish(&fixture);
+	return test_result();
+}
