@@ -88,6 +88,12 @@ static void on_presenter_event(void *data, uint32_t events)
 
 /* ---- making one ---- */
 
+/* An engine that is to run elsewhere cannot use it. */
+static bool may_share_gl(const struct settings *settings)
+{
+	return !settings->gles && (strcmp(settings->context, "auto") == 0 || strcmp(settings->context, "egl") == 0);
+}
+
 static struct presenter *make(struct display *display, struct error *error)
 {
 	const struct settings *settings = display->params.settings;
@@ -102,7 +108,8 @@ static struct presenter *make(struct display *display, struct error *error)
 					.height = settings->window_height,
 					.connector = settings->connector,
 					.mode = settings->mode,
-					.device = settings->kms_device},
+					.device = settings->kms_device,
+					.share_gl = may_share_gl(settings)},
 		.flip = on_flip,
 		.lost = on_lost,
 		.failed = on_failed,

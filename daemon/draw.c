@@ -20,60 +20,6 @@
 
 /* ---- the engine ---- */
 
-#define WARM_SIZE 64
-
-/* A frame with an edge in depth and motion, so that every pass runs. */
-static void make_warm_frame(struct frame *frame, uint32_t *color, float *depth, uint16_t *motion)
-{
-	struct pursuit_frame_header *header = &frame->header;
-	memset(frame, 0, sizeof(*frame));
-	header->frame_id = 1;
-	header->plane_count = 3;
-	header->motion_kind = PURSUIT_MOTION_BACKWARD;
-	header->depth_kind = PURSUIT_DEPTH_DEVICE;
-	header->real_interval_ns = header->motion_interval_ns = 16 * MS;
-	header->planes[0] = (struct pursuit_plane){.role = PURSUIT_ROLE_COLOR, .format = PURSUIT_FORMAT_BGRA8};
-	header->planes[0].transfer.curve = PURSUIT_CURVE_SRGB;
-	header->planes[1] = (struct pursuit_plane){.role = PURSUIT_ROLE_DEPTH, .format = PURSUIT_FORMAT_DEPTH32F};
-	header->planes[2] = (struct pursuit_plane){.role = PURSUIT_ROLE_MOTION, .format = PURSUIT_FORMAT_RG16F};
-	for (uint32_t i = 0; i < 3; i++)
-		header->planes[i].width = header->planes[i].height = WARM_SIZE;
-	frame_layout(header);
-	for (uint32_t i = 0; i < WARM_SIZE * WARM_SIZE; i++) {
-		const bool near = i % WARM_SIZE > 20 && i % WARM_SIZE < 45 && i / WARM_SIZE > 20 && i / WARM_SIZE < 45;
-		color[i] = near ? 0xff8040c0u : 0xff000000u + i * 7;
-		depth[i] = near ? 0.25f : 0.75f;
-		motion[2 * i] = near ? 0x4a00 : 0; /* 12 pixels, as a half */
-		motion[2 * i + 1] = 0;
-	}
-	frame->planes[0] = (const uint8_t *)color;
-	frame->planes[1] = (const uint8_t *)depth;
-	frame->planes[2] = (const uint8_t *)motion;
-}
-
-/* Software renderers compile a shader when it is first drawn with: rather now than in a client's first frames. */
-static void warm_up(struct render *render)
-{
-	static const struct engine_request requests[] = {
-		{ENGINE_SHOW_REAL, 0.0}, {ENGINE_SHOW_REAL, 0.25}, {ENGINE_SHOW_IN_BETWEEN, 0.5}, {ENGINE_SHOW_PLAIN, 0.0}};
-	const struct engine_begin_params params = {.n = 2, .last_phase = 0.5, .real_interval_ns = 16 * MS};
-	const size_t pixels = WARM_SIZE * WARM_SIZE;
-	uint8_t *memory = aligned_alloc(64, pixels * 16);
-	struct frame frame;
-	struct error error = {""};
-	if (!memory)
-		return;
-	make_warm_frame(&frame, (uint32_t *)(void *)memory, (float *)(void *)(memory + pixels * 4),
-					(uint16_t *)(void *)(memory + pixels * 8));
-	struct engine_image image = {memory + pixels * 12, (size_t)WARM_SIZE * 4};
-	int result = engine_begin(render->engine, &frame, &params, &error);
-	for (size_t i = 0; i < sizeof(requests) / sizeof(requests[0]) && result == 0; i++)
-		result = engine_render(render->engine, &requests[i], &image, &error);
-	if (result < 0)
-		log_warning(render->log, "the first picture failed: %s", error.text);
-	free(memory);
-}
-
 static int get_params(const struct render *render, struct engine_params *params, struct error *error)
 {
 	const int result = settings_engine_params(render->settings, params, error);
@@ -88,16 +34,43 @@ int draw_make_engine(struct render *render, struct error *error)
 	const int result = get_params(render, &params, error);
 	if (result < 0)
 		return result;
+	params.brought = render->context && !render->context_shunned ? &render->brought : NULL;
 	render->engine = engine_create(&params, error);
 	if (!render->engine)
 		return -EIO;
-	warm_up(render);
-	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
+	const struct engine_info *info = engine_get_info(render->engine);
+	if (info->brought)
+		log_info(render->log, "pictures stay in GL, in the context of the %s", info->context);
+	render->owner.engine_made(render->owner.data, info);
 	return 0;
+}
+
+void draw_follow_context(struct render *render)
+{
+	const struct presenter_impl *impl = render->presenter ? render->presenter->impl : NULL;
+	const struct presenter_context *context = impl && impl->get_context ? impl->get_context(render->presenter) : NULL;
+	if (context == render->context)
+		return;
+	/* One in a context that goes, or that could have been in the one that comes. */
+	if (render->engine && (context || engine_get_info(render->engine)->brought)) {
+		engine_destroy(&render->engine);
+		render->engine_retry_ns = render->engine_delay_ns = 0;
+	}
+	render->begun = false;
+	render->context = context;
+	render->context_shunned = false;
+	if (context)
+		render->brought = (struct engine_context){.name = context->name,
+												  .enter = context->enter,
+												  .release = context->release,
+												  .find = context->find,
+												  .data = context->data};
 }
 
 static void lose_engine(struct render *render, const char *why)
 {
+	/* What was lost may be the context itself; it comes back only with its presenter. */
+	render->context_shunned |= render->engine && engine_get_info(render->engine)->brought;
 	engine_destroy(&render->engine);
 	render->begun = false;
 	render->engine_delay_ns = render->engine_delay_ns ? render->engine_delay_ns * 2 : ENGINE_FIRST_DELAY;
@@ -124,22 +97,37 @@ bool draw_revive_engine(struct render *render, uint64_t now_ns)
 	return true;
 }
 
+/* Unless the CPU is to draw on it, or to look at it. */
+static bool stays_in_gl(const struct render *render)
+{
+	return engine_get_info(render->engine)->brought && !render->tee && !lab_draws(render->lab) &&
+		   !view_draws(&render->view, clock_now(render->clock));
+}
+
+static int acquire(struct render *render, struct presenter_image *image)
+{
+	struct presenter *presenter = render->presenter;
+	uint32_t width, height;
+	engine_get_size(render->engine, &width, &height);
+	const int result = stays_in_gl(render) ? presenter->impl->acquire_texture(presenter, width, height, image)
+										   : presenter->impl->acquire(presenter, width, height, image);
+	if (result < 0 && result != -E2BIG)
+		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
+	return result;
+}
+
 /* A picture from the engine into the presenter's memory. */
 static int draw(struct render *render, enum engine_show show, double phase, struct presenter_image *image)
 {
 	const struct engine_request request = {.show = show, .phase = phase};
 	struct presenter *presenter = render->presenter;
 	struct error error;
-	uint32_t width, height;
 
-	engine_get_size(render->engine, &width, &height);
-	int result = presenter->impl->acquire(presenter, width, height, image);
-	if (result < 0) {
-		if (result != -E2BIG)
-			log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
+	int result = acquire(render, image);
+	if (result < 0)
 		return result;
-	}
-	struct engine_image target = {.data = image->data, .stride = image->stride, .holds = image->holds};
+	struct engine_image target = {
+		.data = image->data, .stride = image->stride, .holds = image->holds, .texture = image->texture};
 	result = engine_render(render->engine, &request, &target, &error);
 	image->holds = result == 0 ? target.holds : 0;
 	if (result == 0)

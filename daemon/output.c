@@ -284,6 +284,12 @@ static int start(struct output *output)
 	governor_init(&output->render.governor, output->params.settings->governor == 0, output->params.settings->level);
 	output->stats.governor = output->render.governor;
 	struct error error = {""};
+	/* What it draws in may be the presenter's. */
+	pthread_mutex_lock(&output->lock);
+	struct presenter *presenter = output->presenter;
+	output->presenter_changed = false;
+	pthread_mutex_unlock(&output->lock);
+	change_presenter(output, presenter);
 	const int result = start_tee(output, &error) < 0 ? -EIO : draw_make_engine(&output->render, &error);
 	pthread_mutex_lock(&output->lock);
 	output->started = true;

@@ -39,6 +39,7 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	close_all_frames(render);
 	showing_finish(&render->showing);
 	render->presenter = presenter;
+	draw_follow_context(render);
 	if (presenter) {
 		render->grid = presenter->impl->get_grid(presenter);
 		render->lead_ns = presenter->impl->get_lead(presenter);

@@ -47,6 +47,9 @@ struct render {
 	struct engine *engine;
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
 	struct presenter *presenter;               /* the display's; NULL: lost */
+	const struct presenter_context *context;   /* that it offers to draw in; NULL: none */
+	struct engine_context brought;             /* the same, as the engine wants it */
+	bool context_shunned;                      /* an engine was lost in it */
 	struct grid grid;
 	uint64_t lead_ns; /* that the presenter wants pictures before their vblank */
 	struct pacer pacer;
@@ -134,7 +137,9 @@ void draw_plain(struct render *render, uint64_t vblank);
 void draw_empty(struct render *render, uint64_t vblank);
 /* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
 void draw_count_report(struct render *render);
-/* Makes the engine and draws with it once. 0 or -errno with a sentence. */
+/* The engine's context is to be that which the presenter offers, if any: one that cannot go on is destroyed. */
+void draw_follow_context(struct render *render);
+/* Makes the engine. 0 or -errno with a sentence. */
 int draw_make_engine(struct render *render, struct error *error);
 /* Makes a lost engine anew when its time has come. Is there one? */
 bool draw_revive_engine(struct render *render, uint64_t now_ns);

@@ -116,13 +116,19 @@ static void write_text(struct render *render, uint64_t now_ns)
 
 /* ---- all ---- */
 
+bool view_draws(const struct view *view, uint64_t now_ns)
+{
+	return view->switches != 0 || now_ns < view->message_until_ns;
+}
+
 void view_draw(struct render *render, struct presenter_image *image)
 {
 	struct view *view = &render->view;
 	const struct overlay overlay = {image->data, image->stride, image->width, image->height};
 	const uint64_t now_ns = clock_now(render->clock);
-	if (view->switches || now_ns < view->message_until_ns)
-		image->holds = 0;
+	if (!image->data || !view_draws(view, now_ns))
+		return;
+	image->holds = 0;
 	if (view->switches & VIEW_SPLIT)
 		draw_right_half(render, image, &overlay);
 	if (view->switches & VIEW_STATISTICS) {

@@ -42,9 +42,11 @@ uint64_t view_message_end(const struct view *view);
 /* Has it gone just now? True once. */
 bool view_message_is_over(struct view *view, uint64_t now_ns);
 
+/* Is there anything to be drawn over a picture? */
+bool view_draws(const struct view *view, uint64_t now_ns);
 /*
  * Draws what is switched on over a picture that the engine has just made of the frame begun last, or over an empty one
- * before the first; image->holds is 0 if that is anything.
+ * before the first; image->holds is 0 if that is anything. Nothing over a picture in GL.
  */
 void view_draw(struct render *render, struct presenter_image *image);
 

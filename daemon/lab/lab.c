@@ -165,6 +165,11 @@ void lab_flip(struct lab *lab, const struct presenter_flip *flip)
 	wake(lab);
 }
 
+bool lab_draws(const struct lab *lab)
+{
+	return lab && lab->settings->patch != LAB_PATCH_OFF;
+}
+
 void lab_mark_picture(struct lab *lab, struct presenter_image *image, uint64_t serial, uint64_t vblank,
 					  enum points_show show)
 {
@@ -175,7 +180,7 @@ void lab_mark_picture(struct lab *lab, struct presenter_image *image, uint64_t s
 									.picture = {.serial = serial, .code = (uint32_t)vblank, .show = (uint8_t)show}};
 	message.picture.level =
 		settings->patch == LAB_PATCH_ALTERNATE ? vblank & 1 : code_bit(lab->code, message.picture.code);
-	if (settings->patch != LAB_PATCH_OFF) {
+	if (settings->patch != LAB_PATCH_OFF && image->data) {
 		patch_draw(image, settings->patch_corner, settings->patch_size, message.picture.level);
 		image->holds = 0;
 	}

@@ -64,6 +64,8 @@ void lab_flip(struct lab *lab, const struct presenter_flip *flip);
  */
 void lab_mark_picture(struct lab *lab, struct presenter_image *image, uint64_t serial, uint64_t vblank,
 					  enum points_show show);
+/* Does it draw patches at all? Then a picture must be in CPU memory. NULL: no. */
+bool lab_draws(const struct lab *lab);
 /* A vblank is over: what the render thread knows about it (all but flip, event, edge, photon). */
 void lab_tell(struct lab *lab, const struct points *points);
 

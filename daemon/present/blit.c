@@ -52,6 +52,7 @@ int blit_init(struct blit *blit, blit_function (*find)(const char *name), struct
 	}
 	blit->gen_textures(1, &blit->texture);
 	blit->gen_framebuffers(1, &blit->framebuffer);
+	blit->gen_framebuffers(1, &blit->shared_framebuffer);
 	blit->bind_texture(GL_TEXTURE_2D, blit->texture);
 	blit->tex_parameter(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
 	blit->tex_parameter(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
@@ -62,18 +63,27 @@ void blit_finish(struct blit *blit)
 {
 	if (blit->delete_textures)
 		blit->delete_textures(1, &blit->texture);
-	if (blit->delete_framebuffers)
+	if (blit->delete_framebuffers) {
 		blit->delete_framebuffers(1, &blit->framebuffer);
+		blit->delete_framebuffers(1, &blit->shared_framebuffer);
+	}
+}
+
+/* What others drew into a texture is only sure to be seen once it is attached anew. */
+static void attach(struct blit *blit, const struct presenter_image *image)
+{
+	blit->bind_framebuffer(GL_READ_FRAMEBUFFER, blit->shared_framebuffer);
+	blit->framebuffer_texture(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, image->texture, 0);
 }
 
 static void upload(struct blit *blit, const struct presenter_image *image)
 {
+	blit->bind_framebuffer(GL_READ_FRAMEBUFFER, blit->framebuffer);
 	if (blit->width != image->width || blit->height != image->height) {
 		blit->width = image->width;
 		blit->height = image->height;
 		blit->tex_image(GL_TEXTURE_2D, 0, GL_RGBA8, (GLsizei)image->width, (GLsizei)image->height, 0, GL_BGRA,
 						GL_UNSIGNED_INT_8_8_8_8_REV, NULL);
-		blit->bind_framebuffer(GL_READ_FRAMEBUFFER, blit->framebuffer);
 		blit->framebuffer_texture(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, blit->texture, 0);
 	}
 	blit->pixel_store(GL_UNPACK_ROW_LENGTH, (GLint)(image->stride / 4));
@@ -93,7 +103,10 @@ void blit_draw(struct blit *blit, const struct presenter_image *image, uint32_t 
 	const bool same_size = to.width == image->width && to.height == image->height;
 	if (to.width != window_width || to.height != window_height)
 		blit->clear(GL_COLOR_BUFFER_BIT);
-	upload(blit, image);
+	if (image->texture)
+		attach(blit, image);
+	else
+		upload(blit, image);
 	/* Rows of the picture go from top to bottom, those of GL upwards. */
 	const GLint top = (GLint)(window_height - to.y);
 	blit->blit_framebuffer(0, 0, (GLint)image->width, (GLint)image->height, (GLint)to.x, top, (GLint)(to.x + to.width),

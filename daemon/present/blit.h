@@ -2,7 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Draws a picture in CPU memory into the framebuffer of the GL context that is
+ * Draws a picture in CPU memory, or a texture of its share group, into the framebuffer of the GL context that is
  * current (OpenGL 3.0): as large as fits, its shape kept, black around it.
  */
 #ifndef PURSUIT_BLIT_H
@@ -23,7 +23,8 @@ struct blit_rectangle blit_fit(uint32_t width, uint32_t height, uint32_t window_
 
 struct blit {
 	GLuint texture, framebuffer;
-	uint32_t width, height; /* of the texture */
+	GLuint shared_framebuffer; /* of textures that are not ours */
+	uint32_t width, height;    /* of the texture */
 	PFNGLGENTEXTURESPROC gen_textures;
 	PFNGLDELETETEXTURESPROC delete_textures;
 	PFNGLBINDTEXTUREPROC bind_texture;
@@ -47,7 +48,10 @@ typedef void (*blit_function)(void);
 int blit_init(struct blit *blit, blit_function (*find)(const char *name), struct error *error);
 void blit_finish(struct blit *blit);
 
-/* image NULL: all black. The image's memory is not needed any more when it returns. */
+/*
+ * image NULL: all black. The image's memory is not needed any more when it returns; a texture, which others have
+ * finished, must stay until blit_wait(), or the swap that follows is known to be over.
+ */
 void blit_draw(struct blit *blit, const struct presenter_image *image, uint32_t window_width, uint32_t window_height);
 /* Waits until all is drawn. */
 void blit_wait(struct blit *blit);

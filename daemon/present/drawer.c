@@ -100,7 +100,7 @@ static void say_started(struct drawer *drawer, int result, const struct error *e
 	pthread_mutex_unlock(&drawer->lock);
 }
 
-/* The window ends the thread when the display server goes away (window.c). */
+/* Should a library of the window end the thread when the display server goes away. */
 static void on_exit_in_start(void *data)
 {
 	struct error error;

@@ -45,7 +45,12 @@ struct glfw {
 	struct window_state state;
 	uint32_t fit_width, fit_height; /* of the first picture, until main has seen it */
 	bool fitted;
-	atomic_bool left_behind; /* its user knows it no more */
+	atomic_bool open, lost; /* its user knows it, and wants to hear of its loss; it is lost */
+
+	/* the render thread's own; the context does not change */
+	struct presenter_context context;
+	bool has_context, has_functions;
+	struct texture_functions functions;
 
 	/* the keeper's own */
 	struct drawer *drawer;
@@ -330,14 +335,15 @@ static void on_changed(void *data, const struct window_state *state)
 static void on_lost(void *data, const char *sentence)
 {
 	struct glfw *self = data;
-	if (!atomic_load(&self->left_behind))
+	atomic_store(&self->lost, true);
+	if (atomic_exchange(&self->open, false))
 		self->pictures.params.lost(self->pictures.params.data, sentence);
 }
 
 static void free_glfw(struct glfw *self)
 {
 	if (!drawer_destroy(&self->drawer)) {
-		atomic_store(&self->left_behind, true);
+		atomic_store(&self->open, false);
 		/* The thread that hangs in it goes on with the window, its events and the picture when it comes back. */
 		log_warning(self->pictures.params.log, "glfw: a swap hangs; its window is left behind");
 		return;
@@ -362,11 +368,23 @@ static int open_all(struct glfw *self, struct error *error)
 	self->window = window_create(&window_params, error);
 	if (!self->window)
 		return -ENODEV;
+	self->has_context = window_get_context(self->window, &self->context);
 	self->drawer = drawer_create(self->window, params->clock, error);
 	if (!self->drawer || drawer_wait_for_start(self->drawer, error) < 0)
 		return -EIO;
+	if (atomic_load(&self->lost))
+		return error_set(error, -EIO, "glfw: the display server went away");
 	const int result = pthread_create(&self->keeper, NULL, run, self);
 	return result == 0 ? 0 : error_set(error, -result, "glfw: cannot start a thread: %s", strerror(result));
+}
+
+/* From now on its loss is told. */
+static struct presenter *open_to_user(struct glfw *self)
+{
+	atomic_store(&self->open, true);
+	if (atomic_load(&self->lost))
+		on_lost(self, "glfw: the display server went away");
+	return &self->pictures.presenter;
 }
 
 static struct presenter *glfw_create(const struct presenter_params *params, struct error *error)
@@ -378,7 +396,7 @@ static struct presenter *glfw_create(const struct presenter_params *params, stru
 	}
 	pictures_init(&self->pictures, &presenter_glfw, params);
 	if (open_all(self, error) == 0)
-		return &self->pictures.presenter;
+		return open_to_user(self);
 	free_glfw(self);
 	return NULL;
 }
@@ -411,6 +429,28 @@ static void glfw_process_events(struct presenter *presenter)
 		window_fit(self->window, width, height);
 }
 
+static bool glfw_is_possible(const struct presenter_params *params)
+{
+	(void)params;
+	return window_is_possible();
+}
+
+static const struct presenter_context *glfw_get_context(struct presenter *presenter)
+{
+	struct glfw *self = (struct glfw *)presenter;
+	return self->has_context ? &self->context : NULL;
+}
+
+static int glfw_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t height,
+								struct presenter_image *image)
+{
+	struct glfw *self = (struct glfw *)presenter;
+	if (!self->has_functions)
+		self->has_functions = texture_find_functions(&self->functions, self->context.find);
+	return self->has_functions ? pictures_acquire_texture(&self->pictures, &self->functions, width, height, image)
+							   : -ENOSYS;
+}
+
 static void glfw_toggle_fullscreen(struct presenter *presenter)
 {
 	window_toggle_fullscreen(((struct glfw *)presenter)->window);
@@ -419,11 +459,14 @@ static void glfw_toggle_fullscreen(struct presenter *presenter)
 const struct presenter_impl presenter_glfw = {
 	.name = "glfw",
 	.description = "a window, or full screen, on a desktop",
+	.is_possible = glfw_is_possible,
 	.create = glfw_create,
 	.destroy = glfw_destroy,
 	.get_grid = pictures_get_grid,
 	.get_lead = pictures_get_lead,
 	.acquire = pictures_acquire,
+	.get_context = glfw_get_context,
+	.acquire_texture = glfw_acquire_texture,
 	.release = pictures_release,
 	.present = pictures_present,
 	.set_standby = pictures_set_standby,

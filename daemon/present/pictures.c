@@ -96,26 +96,33 @@ uint64_t pictures_get_lead(struct presenter *presenter)
 	return lead_ns;
 }
 
+/* A free one; -1: there is none. */
+static int acquire_index(struct pictures *pictures)
+{
+	pthread_mutex_lock(&pictures->lock);
+	const int index = flips_acquire(&pictures->flips);
+	pthread_mutex_unlock(&pictures->lock);
+	return index;
+}
+
 int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
 {
 	struct pictures *pictures = pictures_of(presenter);
 	const size_t stride = ((size_t)width * 4 + 63) / 64 * 64, size = stride * height;
-
-	pthread_mutex_lock(&pictures->lock);
-	const int index = flips_acquire(&pictures->flips);
-	pthread_mutex_unlock(&pictures->lock);
+	const int index = acquire_index(pictures);
 	if (index < 0)
 		return -EBUSY;
 	struct pictures_memory *memory = &pictures->memory[index];
-	struct presenter_image *shape = &pictures->shapes[index];
-	const bool same = memory->size == size && shape->width == width && shape->height == height;
+	const bool same = memory->size == size && memory->width == width && memory->height == height;
 	if (memory->size != size) {
 		free(memory->data);
 		memory->data = aligned_alloc(64, size);
 		memory->size = memory->data ? size : 0;
 	}
-	*shape = (struct presenter_image){memory->data, stride, width, height, (uint32_t)index, 0};
-	*image = *shape;
+	memory->width = width;
+	memory->height = height;
+	*image = (struct presenter_image){memory->data, stride, width, height, (uint32_t)index, 0, 0};
+	pictures->shapes[index] = *image;
 	image->holds = same ? memory->holds : 0;
 	memory->holds = 0;
 	if (memory->data)
@@ -124,10 +131,39 @@ int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t heigh
 	return -ENOMEM;
 }
 
+int pictures_acquire_texture(struct pictures *pictures, const struct texture_functions *gl, uint32_t width,
+							 uint32_t height, struct presenter_image *image)
+{
+	const int index = acquire_index(pictures);
+	if (index < 0)
+		return -EBUSY;
+	struct pictures_memory *memory = &pictures->memory[index];
+	const bool same = memory->texture.width == width && memory->texture.height == height;
+	const bool there = texture_resize(&memory->texture, gl, width, height);
+	*image = (struct presenter_image){NULL, 0, width, height, (uint32_t)index, 0, memory->texture.name};
+	pictures->shapes[index] = *image;
+	image->holds = same ? memory->texture_holds : 0;
+	memory->texture_holds = 0;
+	if (there)
+		return 0;
+	pictures_release(&pictures->presenter, image);
+	return -ENOMEM;
+}
+
+/* Before anybody else can acquire it. */
+static void keep_holds(struct pictures *pictures, const struct presenter_image *image)
+{
+	struct pictures_memory *memory = &pictures->memory[image->index];
+	if (image->data)
+		memory->holds = image->holds;
+	else
+		memory->texture_holds = image->holds;
+}
+
 void pictures_release(struct presenter *presenter, const struct presenter_image *image)
 {
 	struct pictures *pictures = pictures_of(presenter);
-	pictures->memory[image->index].holds = image->holds;
+	keep_holds(pictures, image);
 	pthread_mutex_lock(&pictures->lock);
 	flips_release(&pictures->flips, image->index);
 	pthread_mutex_unlock(&pictures->lock);
@@ -139,7 +175,7 @@ int pictures_present(struct presenter *presenter, const struct presenter_image *
 	struct pictures *pictures = pictures_of(presenter);
 	int result = -ETIME;
 
-	pictures->memory[image->index].holds = image->holds;
+	keep_holds(pictures, image);
 	pthread_mutex_lock(&pictures->lock);
 	const uint64_t latest_ns = clock_now(pictures->params.clock) + pictures->lead_ns;
 	const bool in_time = latest_ns < grid_time(&pictures->grid, vblank);
@@ -158,7 +194,7 @@ void pictures_set_standby(struct presenter *presenter, const struct presenter_im
 						  uint64_t serial)
 {
 	struct pictures *pictures = pictures_of(presenter);
-	pictures->memory[image->index].holds = image->holds;
+	keep_holds(pictures, image);
 	pthread_mutex_lock(&pictures->lock);
 	flips_set_standby(&pictures->flips, image->index, group, serial);
 	pthread_mutex_unlock(&pictures->lock);

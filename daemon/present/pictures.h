@@ -14,6 +14,7 @@
 
 #include "daemon/present/flips.h"
 #include "daemon/present/presenter.h"
+#include "daemon/present/texture.h"
 
 struct pictures {
 	struct presenter presenter;
@@ -31,7 +32,10 @@ struct pictures {
 	struct pictures_memory {
 		uint8_t *data;
 		size_t size;
-		uint64_t holds;                          /* as struct presenter_image says; 0 while it is acquired */
+		uint32_t width, height;
+		uint64_t holds;         /* as struct presenter_image says; 0 while it is acquired */
+		struct texture texture; /* the same in GL, once it was asked for */
+		uint64_t texture_holds;
 	} memory[FLIPS_IMAGES];                      /* of an acquired picture: the render thread's; else as `shape` says */
 	struct presenter_image shapes[FLIPS_IMAGES]; /* as acquired last */
 };
@@ -56,6 +60,9 @@ bool pictures_follow_vsync(struct pictures *pictures, uint64_t now_ns);
 struct grid pictures_get_grid(struct presenter *presenter);
 uint64_t pictures_get_lead(struct presenter *presenter);
 int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
+/* Without the presenter's context: with the functions of the one that is current. */
+int pictures_acquire_texture(struct pictures *pictures, const struct texture_functions *gl, uint32_t width,
+							 uint32_t height, struct presenter_image *image);
 void pictures_release(struct presenter *presenter, const struct presenter_image *image);
 int pictures_present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
 					 uint64_t serial);

@@ -32,9 +32,9 @@
 #include "daemon/log.h"
 #include "daemon/present/grid.h"
 
-/* A picture in CPU memory: BGRA8, rows top to bottom. Owned by the presenter. */
+/* A picture: BGRA8, rows top to bottom, in CPU memory or in GL. Owned by the presenter. */
 struct presenter_image {
-	uint8_t *data;
+	uint8_t *data; /* NULL: in GL */
 	size_t stride;
 	uint32_t width, height;
 	uint32_t index; /* the presenter's */
@@ -43,6 +43,19 @@ struct presenter_image {
 	 * unknown. The presenter keeps it with the memory and writes nothing there; whoever else does sets it to 0.
 	 */
 	uint64_t holds;
+	uint32_t texture; /* of the share group of get_context(), row 0 on top; 0: in CPU memory */
+};
+
+/*
+ * A GL context (4.3 core, if the driver has it) for whoever draws the pictures, in a share group with that of the
+ * presenter. All functions are called on the render thread.
+ */
+struct presenter_context {
+	const char *name;            /* static */
+	bool (*enter)(void *data);   /* makes it current on this thread; false: it is lost */
+	void (*release)(void *data); /* leaves none current; also once it is lost */
+	void (*(*find)(const char *name))(void);
+	void *data;
 };
 
 enum presenter_shown {
@@ -96,6 +109,7 @@ struct presenter_options {
 	const char *mode;       /* "1920x1080@120"; NULL or "": by the refresh rate */
 	const char *device;     /* NULL or "": the first with a display */
 	const char *title;      /* of a window; NULL: "Pursuit" */
+	bool share_gl;          /* pictures may come in GL: offer a context where it has one */
 };
 
 struct vsync;
@@ -125,6 +139,11 @@ struct presenter;
 struct presenter_impl {
 	const char *name;
 	const char *description;
+	/*
+	 * Optional: may create() work by now? On main, while another presenter is in use: takes nothing from anybody and
+	 * does not wait. Without it create() is only tried when no presenter is in use.
+	 */
+	bool (*is_possible)(const struct presenter_params *params);
 	/* NULL with a sentence that says what to do. */
 	struct presenter *(*create)(const struct presenter_params *params, struct error *error);
 	void (*destroy)(struct presenter *presenter);
@@ -143,6 +162,12 @@ struct presenter_impl {
 	 * display, which the presenter has said.
 	 */
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
+	/*
+	 * Optional, both or none. The context, NULL: it has none to offer; it may be current nowhere when the presenter is
+	 * destroyed. And acquire() of a picture in GL: with that context current; what it binds to texture unit 0 changes.
+	 */
+	const struct presenter_context *(*get_context)(struct presenter *presenter);
+	int (*acquire_texture)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/* Gives a picture back undrawn. */
 	void (*release)(struct presenter *presenter, const struct presenter_image *image);
 	/*

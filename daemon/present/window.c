@@ -34,7 +34,8 @@ GLFWAPI XID glfwGetGLXWindow(GLFWwindow *window);
 struct window {
 	struct window_params params;
 	GLFWwindow *glfw;
-	Display *display; /* NULL: not X11 */
+	GLFWwindow *shared; /* hidden: the context that others draw in; NULL: none */
+	Display *display;   /* NULL: not X11 */
 	bool glx;
 	int event_fd, timer_fd;
 	char monitor[64];        /* wished for */
@@ -47,9 +48,9 @@ struct window {
 	bool seen_full, touched;
 	uint32_t polls;
 	atomic_bool lost;
-	pthread_t main;
-	bool can_leave; /* main is inside window_process_events() */
-	jmp_buf leave;
+	bool begun, open;  /* GLFW is initialised; there is a window */
+	bool mode_changed; /* the monitor's, by full screen */
+	struct error error;
 	uint32_t wished_width, wished_height; /* window_fit(); 0: none */
 	bool toggle_wished;
 };
@@ -160,6 +161,8 @@ static void look(struct window *window, bool redraw)
 static void enter_fullscreen(struct window *window, GLFWmonitor *monitor)
 {
 	const GLFWvidmode mode = best_mode(monitor, window->params.refresh_hz);
+	const GLFWvidmode *now = glfwGetVideoMode(monitor);
+	window->mode_changed |= memcmp(&mode, now, sizeof(mode)) != 0;
 	if (!glfwGetWindowMonitor(window->glfw)) {
 		glfwGetWindowPos(window->glfw, &window->x, &window->y);
 		glfwGetWindowSize(window->glfw, &window->width, &window->height);
@@ -245,31 +248,66 @@ static void on_iconified(GLFWwindow *glfw, int iconified)
 	window_of(glfw)->touched = true;
 }
 
-/* Instead of the one that ends the process; on_display_error() follows. */
-static int on_io_error(Display *display)
+/* ---- a server that goes away ---- */
+
+/*
+ * Where main goes when the connection breaks inside a call of GLFW, which does not expect that: what it asks for then
+ * has no answer, and it goes on with what was in memory before.
+ */
+static _Thread_local jmp_buf *way_out;
+
+static void say_lost(struct window *window)
 {
-	(void)display;
-	return 0;
+	if (!atomic_exchange(&window->lost, true))
+		window->params.lost(window->params.data, "glfw: the connection to the X server broke");
 }
 
 /*
- * Whoever goes on after this waits in Xlib for ever, or ends the process: main
- * leaves its call into GLFW, the drawing thread ends. Nothing of GLFW is called
- * any more, it and the window are left behind.
+ * Instead of the one that ends the process. Xlib has locked the display for this thread for ever, so that others would
+ * wait for ever; without the lock they find the connection broken by themselves, and their calls do nothing.
  */
+static int on_io_error(Display *display)
+{
+	XUnlockDisplay(display);
+	if (way_out)
+		longjmp(*way_out, 1);
+	return 0;
+}
+
+/* Follows it where nobody left, and does not end the process either. */
 static void on_display_error(Display *display, void *data)
 {
-	struct window *window = data;
 	(void)display;
-	if (!atomic_exchange(&window->lost, true))
-		window->params.lost(window->params.data, "glfw: the connection to the X server broke");
-	if (!pthread_equal(pthread_self(), window->main))
-		pthread_exit(NULL);
-	if (window->can_leave)
-		longjmp(window->leave, 1);
+	say_lost(data);
+}
+
+/* On main. False if the connection broke within. */
+static bool call_safely(void (*function)(struct window *window), struct window *window)
+{
+	jmp_buf here;
+	const bool fine = setjmp(here) == 0;
+	if (fine) {
+		way_out = &here;
+		function(window);
+	}
+	way_out = NULL;
+	if (!fine)
+		say_lost(window);
+	return fine;
 }
 
 /* ---- life ---- */
+
+static void set_hints(int kind, int major, int minor)
+{
+	glfwDefaultWindowHints();
+	glfwWindowHint(GLFW_CONTEXT_CREATION_API, kind);
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, major);
+	glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, minor);
+	glfwWindowHint(GLFW_DEPTH_BITS, 0);
+	glfwWindowHint(GLFW_STENCIL_BITS, 0);
+	glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+}
 
 /* A context of GLX costs less than one of EGL where a CPU draws; whichever there is. */
 static GLFWwindow *open_glfw(int width, int height, const char *title)
@@ -277,16 +315,22 @@ static GLFWwindow *open_glfw(int width, int height, const char *title)
 	static const int kinds[] = {GLFW_NATIVE_CONTEXT_API, GLFW_EGL_CONTEXT_API};
 	GLFWwindow *glfw = NULL;
 	for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]) && !glfw; i++) {
-		glfwDefaultWindowHints();
-		glfwWindowHint(GLFW_CONTEXT_CREATION_API, kinds[i]);
-		glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-		glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 0);
-		glfwWindowHint(GLFW_DEPTH_BITS, 0);
-		glfwWindowHint(GLFW_STENCIL_BITS, 0);
-		glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+		set_hints(kinds[i], 3, 0);
 		glfw = glfwCreateWindow(width, height, title, NULL, NULL);
 	}
 	return glfw;
+}
+
+/* A context that shares with the window's comes with a window of its own, which nobody sees. */
+static void open_shared(struct window *window)
+{
+	set_hints(glfwGetWindowAttrib(window->glfw, GLFW_CONTEXT_CREATION_API), 4, 3);
+	glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+	glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+	window->shared = glfwCreateWindow(16, 16, "", NULL, window->glfw);
+	if (!window->shared)
+		log_info(window->params.log, "glfw: no second context with OpenGL 4.3 (%s): pictures come through CPU memory",
+				 glfw_sentence());
 }
 
 static int watch(int epoll_fd, int fd)
@@ -330,11 +374,8 @@ static int open_window(struct window *window, struct error *error)
 	glfwSetWindowPosCallback(window->glfw, on_moved);
 	glfwSetWindowIconifyCallback(window->glfw, on_iconified);
 	window->glx = glfwGetWindowAttrib(window->glfw, GLFW_CONTEXT_CREATION_API) == GLFW_NATIVE_CONTEXT_API;
-	window->display = glfwGetX11Display();
-	if (window->display) {
-		XSetIOErrorHandler(on_io_error);
-		XSetIOErrorExitHandler(window->display, on_display_error, window);
-	}
+	if (options->share_gl)
+		open_shared(window);
 	if (window->fullscreen && monitor)
 		enter_fullscreen(window, monitor);
 	return open_event_fds(window, error);
@@ -346,6 +387,29 @@ static bool connection_is_broken(void)
 	Display *display = glfwGetX11Display();
 	struct pollfd connection = {.fd = display ? ConnectionNumber(display) : -1, .events = POLLIN};
 	return display && poll(&connection, 1, 0) == 1 && (connection.revents & (POLLHUP | POLLERR | POLLNVAL));
+}
+
+bool window_is_possible(void)
+{
+	Display *display = XOpenDisplay(NULL);
+	if (display)
+		XCloseDisplay(display);
+	return display != NULL;
+}
+
+static void begin(struct window *window)
+{
+	window->begun = glfwInit() && !connection_is_broken();
+	if (!window->begun) {
+		error_set(&window->error, -ENODEV, "glfw: no window system: %s; is DISPLAY set?", glfw_sentence());
+		return;
+	}
+	window->display = glfwGetX11Display();
+	if (window->display)
+		XSetIOErrorExitHandler(window->display, on_display_error, window);
+	window->open = open_window(window, &window->error) == 0;
+	if (window->open)
+		look(window, true);
 }
 
 struct window *window_create(const struct window_params *params, struct error *error)
@@ -360,17 +424,14 @@ struct window *window_create(const struct window_params *params, struct error *e
 	window->fullscreen = params->options->fullscreen;
 	window->size_is_free = params->options->width == 0;
 	snprintf(window->monitor, sizeof(window->monitor), "%s", params->options->monitor ? params->options->monitor : "");
-	window->main = pthread_self();
-	if (!glfwInit() || connection_is_broken()) {
-		error_set(error, -ENODEV, "glfw: no window system: %s; is DISPLAY set?", glfw_sentence());
-		free(window);
-		return NULL;
-	}
-	if (open_window(window, error) < 0)
-		window_destroy(&window);
-	else
-		look(window, true);
-	return window;
+	error_set(&window->error, -ENODEV, "glfw: the connection to the X server broke");
+	XSetIOErrorHandler(on_io_error);
+	call_safely(begin, window);
+	if (window->open && !atomic_load(&window->lost))
+		return window;
+	*error = window->error;
+	window_destroy(&window);
+	return NULL;
 }
 
 /* libGLX would tidy up a connection that nobody may touch any more. */
@@ -381,19 +442,26 @@ static void leave_at_once(int status, void *data)
 	_exit(status);
 }
 
+static void end(struct window *window)
+{
+	if (window->shared)
+		glfwDestroyWindow(window->shared);
+	if (window->glfw)
+		glfwDestroyWindow(window->glfw);
+	glfwTerminate();
+}
+
 void window_destroy(struct window **window)
 {
 	struct window *self = *window;
 	*window = NULL;
 	if (!self)
 		return;
-	if (atomic_load(&self->lost)) {
+	/* GLFW would ask a server that is gone how to put the mode back. */
+	if (self->begun && atomic_load(&self->lost) && self->mode_changed)
 		on_exit(leave_at_once, NULL);
-	} else {
-		if (self->glfw)
-			glfwDestroyWindow(self->glfw);
-		glfwTerminate();
-	}
+	else if (self->begun && !call_safely(end, self))
+		on_exit(leave_at_once, NULL);
 	if (self->event_fd >= 0)
 		close(self->event_fd);
 	if (self->timer_fd >= 0)
@@ -443,11 +511,7 @@ void window_process_events(struct window *window)
 	}
 	if (atomic_load(&window->lost))
 		return;
-	if (setjmp(window->leave) == 0) {
-		window->can_leave = true;
-		process_events(window);
-	}
-	window->can_leave = false;
+	call_safely(process_events, window);
 }
 
 void window_toggle_fullscreen(struct window *window)
@@ -462,6 +526,34 @@ void window_fit(struct window *window, uint32_t width, uint32_t height)
 	window->size_is_free = false;
 	window->wished_width = width;
 	window->wished_height = height;
+}
+
+/* ---- whoever draws the pictures ---- */
+
+static bool enter_shared(void *data)
+{
+	struct window *window = data;
+	if (atomic_load(&window->lost))
+		return false;
+	if (glfwGetCurrentContext() != window->shared)
+		glfwMakeContextCurrent(window->shared);
+	return glfwGetCurrentContext() == window->shared && !atomic_load(&window->lost);
+}
+
+static void release_shared(void *data)
+{
+	(void)data;
+	glfwMakeContextCurrent(NULL);
+}
+
+bool window_get_context(struct window *window, struct presenter_context *context)
+{
+	*context = (struct presenter_context){.name = window->glx ? "window (GLX)" : "window (EGL)",
+										  .enter = enter_shared,
+										  .release = release_shared,
+										  .find = window_find_function,
+										  .data = window};
+	return window->shared != NULL;
 }
 
 /* ---- the drawing thread ---- */

@@ -41,9 +41,14 @@ struct window_params {
 
 /* ---- main ---- */
 
+/* May one be made by now? Asks the display server, if there is one; makes nothing. */
+bool window_is_possible(void);
 /* Shows an empty window. NULL with a sentence. */
 struct window *window_create(const struct window_params *params, struct error *error);
-/* After the drawing thread has let the context go, or ended because the window was lost. NULL accepted. */
+/*
+ * After the drawing thread has let the context go, and the other thread that of window_get_context(). Also once it is
+ * lost: then another window can be made when there is a server again. NULL accepted.
+ */
 void window_destroy(struct window **window);
 
 /* Readable when window_process_events() has something to do: events of the display server, else every 10 ms. */
@@ -54,6 +59,11 @@ void window_toggle_fullscreen(struct window *window);
 /* The size of pictures: a window whose size nobody wished for takes it, as far as it fits the monitor. */
 void window_fit(struct window *window, uint32_t width, uint32_t height);
 
+/* ---- whoever draws the pictures, on one thread ---- */
+
+/* The context that share_gl of the options asked for, in the share group of the window's. False: there is none. */
+bool window_get_context(struct window *window, struct presenter_context *context);
+
 /* ---- the drawing thread ---- */
 
 /* 0 or -EIO with a sentence. */
@@ -62,6 +72,7 @@ void window_let_go(struct window *window);
 /* Shows what was drawn; may wait for the display, long if the window cannot be seen. Nothing once it is lost. */
 void window_swap(struct window *window);
 typedef void (*window_function)(void);
+/* Also for the context of window_get_context(). */
 window_function window_find_function(const char *name);
 bool window_has_extension(const char *name);
 /* The Display and GLXDrawable of the X11 window if its context is one of GLX. False: it is not. */

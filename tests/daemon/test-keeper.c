@@ -88,6 +88,24 @@ void window_fit(struct window *window, uint32_t width, uint32_t height)
 	(void)height;
 }
 
+bool window_is_possible(void)
+{
+	return true;
+}
+
+bool window_get_context(struct window *window, struct presenter_context *context)
+{
+	(void)window;
+	(void)context;
+	return false;
+}
+
+window_function window_find_function(const char *name)
+{
+	(void)name;
+	return NULL;
+}
+
 struct drawer *drawer_create(struct window *window, struct clock *clock, struct error *error)
 {
 	(void)window;

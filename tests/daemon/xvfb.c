@@ -114,6 +114,18 @@ uint32_t xvfb_pixel(struct xvfb *xvfb, Window window, unsigned x, unsigned y)
 	return pixel;
 }
 
+bool xvfb_capture(struct xvfb *xvfb, Window window, unsigned width, unsigned height, uint32_t *pixels)
+{
+	XErrorHandler before = XSetErrorHandler(ignore_error);
+	XImage *image = XGetImage(xvfb->display, window, 0, 0, width, height, AllPlanes, ZPixmap);
+	for (unsigned i = 0; image && i < width * height; i++)
+		pixels[i] = (uint32_t)XGetPixel(image, (int)(i % width), (int)(i / width)) & 0xffffff;
+	if (image)
+		XDestroyImage(image);
+	XSetErrorHandler(before);
+	return image != NULL;
+}
+
 void xvfb_press(struct xvfb *xvfb, Window window, const char *key)
 {
 	XKeyEvent event = {

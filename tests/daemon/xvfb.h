@@ -25,6 +25,8 @@ Window xvfb_find(struct xvfb *xvfb, const char *title);
 void xvfb_get_size(struct xvfb *xvfb, Window window, unsigned *width, unsigned *height);
 /* 0xrrggbb of a pixel of the window as it is on the screen. */
 uint32_t xvfb_pixel(struct xvfb *xvfb, Window window, unsigned x, unsigned y);
+/* All of its width x height pixels, 0xrrggbb; false: it is not there, or not all of it is on the screen. */
+bool xvfb_capture(struct xvfb *xvfb, Window window, unsigned width, unsigned height, uint32_t *pixels);
 /* A key pressed and let go: a keysym like "q" or "Escape". */
 void xvfb_press(struct xvfb *xvfb, Window window, const char *key);
 

@@ -1,0 +1,194 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Pictures that stay in GL all the way to the window: to the bit what is on the screen when they go through CPU memory,
+ * nothing is read back, and what the CPU draws or looks at is right all the same.
+ */
+#include <jansson.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "client/pursuit.h"
+#include "tests/daemon/fixture.h"
+#include "tests/daemon/raw-client.h"
+#include "tests/daemon/xvfb.h"
+
+#define WIDTH 203u
+#define HEIGHT 151u
+#define LARGE_WIDTH 500u
+#define LARGE_HEIGHT 400u
+#define PATIENCE_FRAMES 800 /* 20 s */
+
+static struct fixture fixture;
+static struct xvfb xvfb;
+static struct pursuit_stream *stream;
+static Window window;
+
+/* No two neighbours alike. */
+static uint32_t color_at(uint32_t x, uint32_t y)
+{
+	return (x * 7 + y * 31) * 2654435761u >> 8;
+}
+
+static void submit_one(void)
+{
+	struct pursuit_frame *frame = pursuit_acquire(stream);
+	for (uint32_t y = 0; frame && y < HEIGHT; y++) {
+		uint32_t *color = (uint32_t *)(void *)(frame->color.data + y * frame->color.stride);
+		for (uint32_t x = 0; x < WIDTH; x++)
+			color[x] = 0xff000000u | color_at(x, y);
+		memset(frame->depth.data + y * frame->depth.stride, 0, (size_t)WIDTH * 4);
+		memset(frame->motion.data + y * frame->motion.stride, 0, (size_t)WIDTH * 8);
+	}
+	if (frame)
+		pursuit_submit(stream, frame);
+	sleep_ms(25);
+}
+
+static bool play_until_pixel(uint32_t x, uint32_t y, uint32_t color, bool equal)
+{
+	for (int i = 0; i < PATIENCE_FRAMES; i++) {
+		if ((xvfb_pixel(&xvfb, window, x, y) == color) == equal)
+			return true;
+		submit_one();
+	}
+	return false;
+}
+
+static json_int_t count_runs(const char *pass)
+{
+	static struct raw_reply reply;
+	const int fd = raw_greet(fixture.socket);
+	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
+	json_t *status = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
+	const json_t *runs = json_object_get(json_object_get(status, "passes"), pass);
+	CHECK(json_is_integer(runs));
+	const json_int_t count = json_integer_value(runs);
+	json_decref(status);
+	close(fd);
+	return count;
+}
+
+static void start(const char *context, const char *more)
+{
+	const char *const arguments[] = {"--present", "glfw", "--context", context, more, NULL};
+	const struct pursuit_stream_params params = {.width = WIDTH,
+												 .height = HEIGHT,
+												 .depth_format = PURSUIT_DEPTH_FLOAT32,
+												 .motion_format = PURSUIT_MOTION_FLOAT32,
+												 .socket_path = fixture.socket};
+	fixture_start(&fixture, arguments);
+	stream = pursuit_open(&params);
+	window = xvfb_find(&xvfb, "Pursuit");
+	CHECK(window != 0);
+	CHECK(play_until_pixel(WIDTH - 1, HEIGHT - 1, color_at(WIDTH - 1, HEIGHT - 1), true));
+}
+
+static void stop(void)
+{
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+	pursuit_close(&stream);
+}
+
+/* What is on the screen: the picture as it is, with the help over it, and enlarged. */
+struct screens {
+	uint32_t plain[WIDTH * HEIGHT], help[WIDTH * HEIGHT], large[LARGE_WIDTH * LARGE_HEIGHT];
+};
+
+static void take_screens(struct screens *screens)
+{
+	const uint32_t middle = color_at(WIDTH / 2, HEIGHT / 2);
+	CHECK(xvfb_capture(&xvfb, window, WIDTH, HEIGHT, screens->plain));
+	xvfb_press(&xvfb, window, "h");
+	CHECK(play_until_pixel(WIDTH / 2, HEIGHT / 2, middle, false));
+	CHECK(xvfb_capture(&xvfb, window, WIDTH, HEIGHT, screens->help));
+	xvfb_press(&xvfb, window, "h");
+	CHECK(play_until_pixel(WIDTH / 2, HEIGHT / 2, middle, true));
+	XResizeWindow(xvfb.display, window, LARGE_WIDTH, LARGE_HEIGHT);
+	XFlush(xvfb.display);
+	CHECK(play_until_pixel(LARGE_WIDTH / 2, LARGE_HEIGHT - 40, 0, false));
+	for (int i = 0; i < 8; i++)
+		submit_one();
+	CHECK(xvfb_capture(&xvfb, window, LARGE_WIDTH, LARGE_HEIGHT, screens->large));
+}
+
+static void test_same_screen(void)
+{
+	static struct screens shared, through_memory;
+	start("egl", NULL);
+	CHECK(fixture_logged(&fixture, "pictures stay in GL"));
+	CHECK_INT(count_runs("read"), 0);
+	CHECK(count_runs("copy") > 0);
+	take_screens(&shared);
+	CHECK(count_runs("read") > 0); /* what the help lay over */
+	stop();
+
+	start("egl-device:0", NULL);
+	take_screens(&through_memory);
+	CHECK_INT(count_runs("copy"), 0);
+	stop();
+	for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
+		CHECK_INT(shared.plain[i], color_at(i % WIDTH, i / WIDTH));
+	CHECK(memcmp(shared.plain, through_memory.plain, sizeof(shared.plain)) == 0);
+	CHECK(memcmp(shared.help, through_memory.help, sizeof(shared.help)) == 0);
+	CHECK(memcmp(shared.large, through_memory.large, sizeof(shared.large)) == 0);
+}
+
+/* A file of what is shown, and a photodiode's patch, need the pixels. */
+static void test_recorded(void)
+{
+	char option[160];
+	snprintf(option, sizeof(option), "--tee=%s/shown.y4m", fixture.folder);
+	start("egl", option);
+	CHECK_INT(count_runs("copy"), 0);
+	CHECK(count_runs("read") > 0);
+	stop();
+	CHECK(fixture_logged(&fixture, "tee: "));
+}
+
+static void test_patch(void)
+{
+	start("egl", "--patch=alternate");
+	CHECK_INT(count_runs("copy"), 0);
+	CHECK(play_until_pixel(2, HEIGHT - 2, 0xffffff, true));
+	CHECK(play_until_pixel(2, HEIGHT - 2, 0x000000, true));
+	stop();
+}
+
+/* The engine goes on without the window's context when the server is gone. */
+static void test_lost_server(void)
+{
+	struct pursuit_feedback_report report;
+	uint64_t shown = 0;
+	start("egl", "--present=glfw,headless");
+	CHECK(fixture_logged(&fixture, "pictures stay in GL"));
+	xvfb_stop(&xvfb);
+	CHECK(fixture_logged(&fixture, "headless presents now"));
+	while (pursuit_poll_feedback(stream, &report))
+		continue;
+	for (int i = 0; i < PATIENCE_FRAMES && shown < 20; i++) {
+		submit_one();
+		while (pursuit_poll_feedback(stream, &report))
+			shown += report.shown == PURSUIT_SHOWN;
+	}
+	CHECK(shown >= 20);
+	stop();
+}
+
+int main(int argc, char **argv)
+{
+	(void)argc;
+	if (!xvfb_start(&xvfb))
+		SKIP("no Xvfb");
+	fixture_init(&fixture, argv[1]);
+	RUN(test_same_screen);
+	RUN(test_recorded);
+	RUN(test_patch);
+	RUN(test_lost_server); /* the last one: it has no server afterwards */
+	xvfb_stop(&xvfb);
+	fixture_finish(&fixture);
+	return test_result();
+}
