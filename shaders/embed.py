@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The Pursuit authors
-"""Turns GLSL files into C strings, or writes what a renderer would get, for validation.
+"""Turns text files into C strings, or writes what a renderer would get of a shader, for validation.
 
 embed.py c OUT.c LIMITS FILE...            one array shader_NAME_STAGE[] a file, and shader_limits[]
 embed.py glsl OUT VERSION LIMITS FILE DEFINE...  the whole text of one variant
+embed.py text OUT.c HEADER FILE...         one array NAME_ENDING[] a file, declared in HEADER
 """
 import os
 import sys
@@ -36,6 +37,16 @@ def write_c(out, limits, files):
             c.write(f"\nconst char shader_{name}[] =\n{literal(read(path))};\n")
 
 
+def write_text(out, header, files):
+    with open(out, "w", encoding="utf-8") as c:
+        c.write("/* SPDX-License-Identifier: MIT */\n/* Made by shaders/embed.py. */\n")
+        c.write(f'#include "{header}"\n')
+        for path in files:
+            name = os.path.basename(path).replace(".", "_")
+            with open(path, encoding="utf-8") as text:
+                c.write(f"\nconst char {name}[] =\n{literal(text.read())};\n")
+
+
 def write_glsl(out, version, limits, path, defines):
     with open(out, "w", encoding="utf-8") as glsl:
         glsl.write(f"#version {version}\n")
@@ -47,5 +58,7 @@ def write_glsl(out, version, limits, path, defines):
 
 if sys.argv[1] == "c":
     write_c(sys.argv[2], sys.argv[3], sys.argv[4:])
+elif sys.argv[1] == "text":
+    write_text(sys.argv[2], sys.argv[3], sys.argv[4:])
 else:
     write_glsl(sys.argv[2], sys.argv[3], sys.argv[4], sys.argv[5], sys.argv[6:])

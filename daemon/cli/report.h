@@ -47,6 +47,14 @@ struct report_row {
 	uint8_t *seen; /* by the pursuit camera, the work's crop; owned, may be NULL */
 };
 
+/* Displayed pictures of a work that the page's viewer has, at most. */
+#define REPORT_SHOWN 8u
+
+struct report_shown {
+	double time_s, phase;
+	bool real;
+};
+
 /* Pictures of a work that are kept for the page. */
 struct report_gallery {
 	const struct report_work *work;
@@ -55,6 +63,8 @@ struct report_gallery {
 	uint8_t *truth;            /* seen of the truth, the crop; owned */
 	struct contact *sheet;     /* while it is made; owned */
 	char contact[REPORT_NAME]; /* file of the contact sheet in DIR/pictures, "": none */
+	struct report_shown shown[REPORT_SHOWN];
+	uint32_t shown_first, shown_count; /* of the first clip; 0: none */
 };
 
 struct report_options {

@@ -45,6 +45,8 @@ static void choose_part(struct report_gallery *gallery, const struct clip *clip)
 		.width = clip->width < PART_WIDTH ? clip->width : PART_WIDTH,
 		.height = clip->height < PART_HEIGHT ? clip->height : PART_HEIGHT,
 	};
+	crop.x = (clip->width - crop.width) / 2; /* of a recording, about which nothing is known, the middle */
+	crop.y = (clip->height - crop.height) / 2;
 	gallery->crop = crop;
 	for (crop.y = 0; clip->site_count && crop.y + crop.height <= clip->height; crop.y += SEARCH_STEP) {
 		for (crop.x = 0; crop.x + crop.width <= clip->width; crop.x += SEARCH_STEP) {
@@ -70,7 +72,7 @@ static double mean_speed(const struct clip_site *site, const struct crop *crop)
 	return sum / ((double)crop->width * crop->height) / site->window_s;
 }
 
-/* The contact sheet shows a part about the middle of the other one; of a recording the middle. */
+/* The contact sheet shows a part about the middle of the other one. */
 static struct crop sheet_part(const struct report_gallery *gallery, const struct clip *clip)
 {
 	struct crop part = {
@@ -78,8 +80,7 @@ static struct crop sheet_part(const struct report_gallery *gallery, const struct
 		.height = clip->height < SHEET_HEIGHT ? clip->height : SHEET_HEIGHT,
 	};
 	const struct crop *crop = &gallery->crop;
-	const uint32_t x = clip->site_count ? crop->x + crop->width / 2 : clip->width / 2;
-	const uint32_t y = clip->site_count ? crop->y + crop->height / 2 : clip->height / 2;
+	const uint32_t x = crop->x + crop->width / 2, y = crop->y + crop->height / 2;
 	part.x = x < part.width / 2 ? 0 : x - part.width / 2;
 	part.y = y < part.height / 2 ? 0 : y - part.height / 2;
 	part.x = part.x + part.width > clip->width ? clip->width - part.width : part.x;

@@ -5,19 +5,9 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <string.h>
 
-static const char style[] =
-	"body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:1240px;padding:0 1em;color:#1a1a1a;"
-	"background:#fff}\nh1{font-size:1.7em}h2{margin-top:2.2em;border-bottom:1px solid #ccc;padding-bottom:.2em}\n"
-	"table{border-collapse:collapse;margin:1em 0;font-variant-numeric:tabular-nums}\n"
-	"th,td{padding:.22em .6em;text-align:right;border-bottom:1px solid #e4e4e4}\n"
-	"th{border-bottom:2px solid #999;font-weight:600;vertical-align:bottom}\n"
-	"td:first-child,th:first-child{text-align:left;white-space:nowrap}\n"
-	"td.text{text-align:left}.best{background:#d7f0dd;font-weight:600}.bad{background:#fbe0d8}\n"
-	".wide{overflow-x:auto;font-size:.85em}.wide th{max-width:6em}.note{color:#555;max-width:60em}\n"
-	"figure{display:inline-block;margin:.4em .6em .6em 0;vertical-align:top}figcaption{font-size:.85em;color:#333}\n"
-	"img{max-width:100%;image-rendering:auto}img.pixels{image-rendering:pixelated}\n"
-	"summary{cursor:pointer;font-weight:600;margin:.6em 0}\n";
+#include "report_assets.h"
 
 void html_text(FILE *out, const char *text)
 {
@@ -57,18 +47,52 @@ static void put_base64(FILE *out, FILE *in)
 	}
 }
 
-bool html_image(FILE *out, const char *path, const char *type, const char *description, const char *attributes)
+bool html_data(FILE *out, const char *path, const char *type, const char *before)
 {
 	FILE *in = fopen(path, "re");
 	if (!in)
 		return false;
-	fprintf(out, "<img %s alt=\"", attributes);
-	html_text(out, description);
-	fprintf(out, "\" src=\"data:%s;base64,", type);
+	fprintf(out, "%sdata:%s;base64,", before, type);
 	put_base64(out, in);
-	fputs("\">", out);
 	fclose(in);
 	return true;
+}
+
+bool html_image(FILE *out, const char *path, const char *type, const char *description, const char *attributes)
+{
+	char before[128];
+	snprintf(before, sizeof(before), "<img %s src=\"", attributes);
+	if (!html_data(out, path, type, before))
+		return false;
+	fputs("\" alt=\"", out);
+	html_text(out, description);
+	fputs("\">", out);
+	return true;
+}
+
+void html_json_text(FILE *out, const char *text)
+{
+	fputc('"', out);
+	for (; *text; text++) {
+		const unsigned char byte = (unsigned char)*text;
+		if (byte < 0x20 || strchr("\"\\<>&", byte))
+			fprintf(out, "\\u%04x", byte);
+		else
+			fputc(byte, out);
+	}
+	fputc('"', out);
+}
+
+void html_table_begin(FILE *out, const char *label)
+{
+	fputs("<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"", out);
+	html_text(out, label);
+	fputs("\"><table>", out);
+}
+
+void html_table_end(FILE *out)
+{
+	fputs("</table></div>\n", out);
 }
 
 void html_number(FILE *out, double value, int digits, const char *mark)
@@ -83,9 +107,11 @@ void html_number(FILE *out, double value, int digits, const char *mark)
 
 void html_begin(FILE *out, const char *title)
 {
-	fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<title>", out);
+	fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+		  "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>",
+		  out);
 	html_text(out, title);
-	fprintf(out, "</title>\n<style>\n%s</style></head>\n<body>\n<h1>", style);
+	fprintf(out, "</title>\n<style>\n%s</style></head>\n<body>\n<h1>", report_page_css);
 	html_text(out, title);
 	fputs("</h1>\n", out);
 }

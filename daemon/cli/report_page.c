@@ -11,6 +11,7 @@
 #include "daemon/record/image.h"
 #include "report_html.h"
 #include "report_overall.h"
+#include "report_viewer.h"
 
 static void put_name(FILE *out, const struct report_variant *variant)
 {
@@ -65,10 +66,10 @@ static double best_mean(const struct report *report, enum score_measure measure)
 
 static void put_overall(const struct report *report, FILE *out)
 {
-	fprintf(out,
-			"<h2>All methods</h2>\n<p class=\"note\">Means over all scenes that move, N = %u, %ux%u.</p>\n"
-			"<div class=\"wide\"><table><tr><th>method</th><th>ms<br>median</th><th>ms<br>p99</th>",
+	fprintf(out, "<h2>All methods</h2>\n<p class=\"note\">Means over all scenes that move, N = %u, %ux%u.</p>\n",
 			report->works[0].n, report->works[0].size.width, report->works[0].size.height);
+	html_table_begin(out, "All methods");
+	fputs("<tr><th>method</th><th>ms<br>median</th><th>ms<br>p99</th>", out);
 	for (int i = 0; i < SCORE_MEASURES; i++)
 		fprintf(out, "<th title=\"%s\">%s%s%s</th>", score_table[i].help, score_table[i].title,
 				*score_table[i].unit ? "<br>" : "", score_table[i].unit);
@@ -89,7 +90,7 @@ static void put_overall(const struct report *report, FILE *out)
 		}
 		fputs("</tr>\n", out);
 	}
-	fputs("</table></div>\n", out);
+	html_table_end(out);
 	put_file(report, out, "plots", "overall", ".svg", "error against run time", "");
 	put_file(report, out, "plots", "speed", ".svg", "error against speed", "");
 }
@@ -97,9 +98,10 @@ static void put_overall(const struct report *report, FILE *out)
 /* Scene by method: the figure that the whole thing is about. */
 static void put_matrix(const struct report *report, FILE *out)
 {
-	fputs("<h2>Perceived error, scene by scene</h2>\n<p class=\"note\">Code values, 0 to 255; less is better.</p>\n"
-		  "<div class=\"wide\"><table><tr><th>scene</th>",
+	fputs("<h2>Perceived error, scene by scene</h2>\n<p class=\"note\">Code values, 0 to 255; less is better.</p>\n",
 		  out);
+	html_table_begin(out, "Perceived error, scene by scene");
+	fputs("<tr><th>scene</th>", out);
 	for (uint32_t v = 0; v < report->variant_count; v++) {
 		if (!report->variants[v].plain)
 			continue;
@@ -127,22 +129,22 @@ static void put_matrix(const struct report *report, FILE *out)
 		}
 		fputs("</tr>\n", out);
 	}
-	fputs("</table></div>\n", out);
+	html_table_end(out);
 }
 
 /* ---- a scene ---- */
 
 static void put_seen(const struct report *report, FILE *out, const uint8_t *seen, const struct crop *crop,
-					 const char *name, const char *caption)
+					 const char *name, const char *id, const char *caption)
 {
-	char path[4200], attributes[96];
+	char path[4200], attributes[96 + 2 * REPORT_NAME];
 	struct error error;
 	snprintf(path, sizeof(path), "%s/pictures/%s", report->options.out, name);
 	if (image_write_png(path, seen, 4 * (size_t)crop->width, crop->width, crop->height, false, &error) < 0) {
 		fprintf(stderr, "pursuit report: %s\n", error.text);
 		return;
 	}
-	snprintf(attributes, sizeof(attributes), "class=\"pixels\" width=\"%u\"", 2 * crop->width);
+	snprintf(attributes, sizeof(attributes), "id=\"%s\" class=\"pixels\" width=\"%u\"", id, 2 * crop->width);
 	fputs("<figure>", out);
 	html_image(out, path, "image/png", caption, attributes);
 	fputs("<figcaption>", out);
@@ -154,14 +156,16 @@ static void put_camera(const struct report *report, FILE *out, uint32_t index)
 {
 	const struct report_gallery *gallery = &report->galleries[index];
 	const struct report_work *work = gallery->work;
-	char name[4 * REPORT_NAME], caption[160];
+	char name[4 * REPORT_NAME], caption[160], seen[REPORT_NAME], id[2 * REPORT_NAME];
 	if (!gallery->truth || work->n != report->works[0].n)
 		return;
 	fprintf(out,
 			"<p>Through the pursuit camera, at %.2f s; motion here is %.0f pixels a second on average.</p>\n<div>\n",
 			gallery->time_s, gallery->speed);
 	snprintf(name, sizeof(name), "seen-%u-%s-truth.png", index, work->name);
-	put_seen(report, out, gallery->truth, &gallery->crop, name, "truth, 960 Hz");
+	viewer_seen_id(seen, index);
+	snprintf(id, sizeof(id), "%struth", seen);
+	put_seen(report, out, gallery->truth, &gallery->crop, name, id, "truth, 960 Hz");
 	for (uint32_t i = 0; i < report->row_count; i++) {
 		const struct report_row *row = &report->rows[i];
 		if (row->work != work || !row->seen || !row->variant->plain)
@@ -169,7 +173,8 @@ static void put_camera(const struct report *report, FILE *out, uint32_t index)
 		snprintf(name, sizeof(name), "seen-%u-%s-%s.png", index, work->name, row->variant->method);
 		snprintf(caption, sizeof(caption), "%s: perceived error %.2f in all of the scene", row->variant->method,
 				 score_value(&row->score, SCORE_PERCEIVED_ERROR));
-		put_seen(report, out, row->seen, &gallery->crop, name, caption);
+		snprintf(id, sizeof(id), "%s%s", seen, row->variant->method);
+		put_seen(report, out, row->seen, &gallery->crop, name, id, caption);
 	}
 	fputs("</div>\n", out);
 }
@@ -212,7 +217,9 @@ static void put_tables(const struct report *report, FILE *out)
 	{
 		fputs("<h2>", out);
 		html_text(out, json_string_value(json_object_get(table, "title")));
-		fputs("</h2>\n<div class=\"wide\"><table><tr>", out);
+		fputs("</h2>\n", out);
+		html_table_begin(out, json_string_value(json_object_get(table, "title")));
+		fputs("<tr>", out);
 		json_array_foreach(json_object_get(table, "columns"), i, cell)
 		{
 			fputs("<th>", out);
@@ -235,16 +242,15 @@ static void put_tables(const struct report *report, FILE *out)
 			}
 			fputs("</tr>\n", out);
 		}
-		fputs("</table></div>\n", out);
+		html_table_end(out);
 	}
 }
 
 static void put_all_rows(const struct report *report, FILE *out)
 {
-	fputs(
-		"<h2>All rows</h2>\n<details><summary>Every scene, method and setting</summary><div class=\"wide\"><table><tr>"
-		"<th>case</th><th>ms p50</th><th>ms p99</th><th>kB up</th><th>kB down</th>",
-		out);
+	fputs("<h2>All rows</h2>\n<details><summary>Every scene, method and setting</summary>", out);
+	html_table_begin(out, "All rows");
+	fputs("<tr><th>case</th><th>ms p50</th><th>ms p99</th><th>kB up</th><th>kB down</th>", out);
 	for (int i = 0; i < SCORE_MEASURES; i++)
 		fprintf(out, "<th>%s</th>", score_table[i].title);
 	fputs("</tr>\n", out);
@@ -264,16 +270,19 @@ static void put_all_rows(const struct report *report, FILE *out)
 			html_number(out, score_value(&row->score, (enum score_measure)i), score_table[i].digits, NULL);
 		fputs("</tr>\n", out);
 	}
-	fputs("</table></div></details>\n", out);
+	html_table_end(out);
+	fputs("</details>\n", out);
 }
 
 static void put_definitions(FILE *out)
 {
-	fputs("<h2>What the measures are</h2>\n<table><tr><th>name</th><th>unit</th><th>what</th></tr>\n", out);
+	fputs("<h2>What the measures are</h2>\n", out);
+	html_table_begin(out, "What the measures are");
+	fputs("<tr><th>name</th><th>unit</th><th>what</th></tr>\n", out);
 	for (int i = 0; i < SCORE_MEASURES; i++)
 		fprintf(out, "<tr><td>%s</td><td class=\"text\">%s</td><td class=\"text\">%s</td></tr>\n", score_table[i].title,
 				score_table[i].unit, score_table[i].help);
-	fputs("</table>\n", out);
+	html_table_end(out);
 }
 
 int report_write_page(struct report *report, struct error *error)
@@ -289,11 +298,13 @@ int report_write_page(struct report *report, struct error *error)
 		put_overall(report, out);
 		put_matrix(report, out);
 	}
+	viewer_write(out);
 	for (uint32_t i = 0; i < report->work_count; i++)
 		put_work(report, out, i);
 	put_tables(report, out);
 	put_definitions(out);
 	put_all_rows(report, out);
+	viewer_write_data(report, out);
 	html_end(out);
 	const bool wrong = ferror(out) != 0;
 	if (fclose(out) != 0 || wrong)

@@ -10,6 +10,7 @@
 
 #include "interrupt.h"
 #include "report.h"
+#include "report_frames.h"
 #include "report_gallery.h"
 #include "report_progress.h"
 
@@ -172,6 +173,8 @@ static int score_row(struct run *run, struct report_row *row, const struct clip 
 		result = scorer_add(run->scorer, &row->score, clip, run->pictures, crop, row->seen, error);
 	if (result == 0 && kept && row->variant->plain && row->variant->engine)
 		result = gallery_add(run->gallery, row->variant->method, clip, run->pictures, error);
+	if (result == 0 && kept && row->variant->plain && row->variant->engine)
+		result = frames_add(run->report, run->gallery, row->variant, clip, run->pictures, error);
 	return result;
 }
 
@@ -186,6 +189,8 @@ static int run_clip(struct run *run, uint32_t index, struct error *error)
 	int result = make_pictures(run, clip, error);
 	if (result == 0 && index == 0) {
 		result = gallery_begin(run->gallery, run->work, clip, error);
+		if (result == 0 && (run->work->recording || run->work->n == run->report->works[0].n))
+			result = frames_begin(run->report, run->gallery, clip, error);
 		report_progress_step(&run->progress, "%s, N = %u: engine times", run->work->name, run->work->n);
 		if (result == 0)
 			result = time_rows(run, clip, error);

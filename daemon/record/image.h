@@ -56,6 +56,13 @@ uint8_t image_encode_srgb(float light);
 int image_write_png(const char *path, const uint8_t *bgra, size_t stride, uint32_t width, uint32_t height, bool alpha,
 					struct error *error);
 
+/*
+ * The same as small as it gets, for files that travel: packed BGRA8 as RGB.
+ * `differences`: most of it is 0, and what is not is like noise.
+ */
+int image_write_png_small(const char *path, const uint8_t *bgra, uint32_t width, uint32_t height, bool differences,
+						  struct error *error);
+
 /* Writes packed floats as PFM: one channel as Pf, two (the third becomes 0) or three as PF. */
 int image_write_pfm(const char *path, const float *values, uint32_t width, uint32_t height, uint32_t channels,
 					struct error *error);

@@ -28,7 +28,8 @@ struct png_job {
 	uint8_t **rows;
 	uint32_t width, height, channels, bits;
 	size_t row_bytes;
-	bool alpha; /* of the file */
+	bool alpha;         /* of the file */
+	int level, filters; /* of what is written */
 };
 
 static void on_error(png_struct *png, const char *message)
@@ -156,13 +157,14 @@ int image_read_png(const char *path, FILE *file, enum image_want want, uint64_t 
 
 /* ---- writing ---- */
 
-static void encode(struct png_job *job, FILE *file, bool alpha)
+static void encode(struct png_job *job, FILE *file)
 {
+	const bool alpha = job->alpha;
 	if (setjmp(png_jmpbuf(job->png)))
 		return;
 	png_init_io(job->png, file);
-	png_set_compression_level(job->png, 1);
-	png_set_filter(job->png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+	png_set_compression_level(job->png, job->level);
+	png_set_filter(job->png, PNG_FILTER_TYPE_BASE, job->filters);
 	png_set_IHDR(job->png, job->info, job->width, job->height, 8, alpha ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB,
 				 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
 	png_set_sRGB(job->png, job->info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -174,24 +176,53 @@ static void encode(struct png_job *job, FILE *file, bool alpha)
 	png_write_end(job->png, NULL);
 }
 
+static int write_png(struct png_job *job, const uint8_t *bgra)
+{
+	FILE *file = fopen(job->path, "wbe");
+	if (!file)
+		return error_set(job->error, -errno, "%s: cannot be created: %s", job->path, strerror(errno));
+	job->png = png_create_write_struct(PNG_LIBPNG_VER_STRING, job, on_error, on_warning);
+	job->info = job->png ? png_create_info_struct(job->png) : NULL;
+	job->rows = malloc(sizeof(job->rows[0]) * job->height);
+	if (job->info && job->rows) {
+		for (uint32_t y = 0; y < job->height; y++)
+			job->rows[y] = (uint8_t *)(uintptr_t)bgra + y * job->row_bytes;
+		encode(job, file);
+	} else {
+		job->result = image_out_of_memory(job->path, job->error);
+	}
+	finish_job(job, true);
+	const int closed = image_close_written(job->path, file, job->error);
+	return closed < 0 ? closed : job->result;
+}
+
 int image_write_png(const char *path, const uint8_t *bgra, size_t stride, uint32_t width, uint32_t height, bool alpha,
 					struct error *error)
 {
-	struct png_job job = {.path = path, .error = error, .width = width, .height = height, .row_bytes = stride};
-	FILE *file = fopen(path, "wbe");
-	if (!file)
-		return error_set(error, -errno, "%s: cannot be created: %s", path, strerror(errno));
-	job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, on_error, on_warning);
-	job.info = job.png ? png_create_info_struct(job.png) : NULL;
-	job.rows = malloc(sizeof(job.rows[0]) * height);
-	if (job.info && job.rows) {
-		for (uint32_t y = 0; y < height; y++)
-			job.rows[y] = (uint8_t *)(uintptr_t)bgra + y * stride;
-		encode(&job, file, alpha);
-	} else {
-		job.result = image_out_of_memory(path, error);
-	}
-	finish_job(&job, true);
-	const int closed = image_close_written(path, file, error);
-	return closed < 0 ? closed : job.result;
+	struct png_job job = {
+		.path = path,
+		.error = error,
+		.width = width,
+		.height = height,
+		.row_bytes = stride,
+		.alpha = alpha,
+		.level = 1,
+		.filters = PNG_FILTER_SUB,
+	};
+	return write_png(&job, bgra);
+}
+
+int image_write_png_small(const char *path, const uint8_t *bgra, uint32_t width, uint32_t height, bool differences,
+						  struct error *error)
+{
+	struct png_job job = {
+		.path = path,
+		.error = error,
+		.width = width,
+		.height = height,
+		.row_bytes = 4 * (size_t)width,
+		.level = 9,
+		.filters = differences ? PNG_FILTER_NONE : PNG_ALL_FILTERS,
+	};
+	return write_png(&job, bgra);
 }

@@ -26,7 +26,7 @@ class Page(html.parser.HTMLParser):
             if name in ("src", "href") and not value.startswith("data:"):
                 self.fetched.append(value)
         self.images += tag == "img"
-        if tag not in ("img", "meta", "br"):
+        if tag not in ("img", "meta", "br", "input"):
             self.open.append(tag)
 
     def handle_endtag(self, tag):

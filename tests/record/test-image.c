@@ -163,6 +163,22 @@ static void test_png_round_trip(void)
 	CHECK_INT(image_write_png("/no/folder/x.png", data[0], sizeof(data[0]), WIDTH, HEIGHT, false, &error), -ENOENT);
 }
 
+static void test_png_small(void)
+{
+	uint8_t data[HEIGHT][WIDTH * 4];
+	struct error error = {""};
+	struct image image;
+	fill_random(data[0], sizeof(data));
+	for (int differences = 0; differences < 2; differences++) {
+		CHECK_INT(image_write_png_small(sample_path("out.png"), data[0], WIDTH, HEIGHT, differences, &error), 0);
+		CHECK_INT(image_read(sample_path("out.png"), IMAGE_BGRA, 0, &image, &error), 0);
+		for (size_t i = 0; i < sizeof(data); i++)
+			CHECK_INT(image.bgra[i], i % 4 == 3 ? 255 : data[0][i]);
+		image_finish(&image);
+	}
+	CHECK_INT(image_write_png_small("/no/folder/x.png", data[0], WIDTH, HEIGHT, true, &error), -ENOENT);
+}
+
 /* ---- PFM ---- */
 
 static void test_pfm_round_trip(void)
@@ -433,6 +449,7 @@ int main(void)
 	RUN(test_png_color_types);
 	RUN(test_png_values);
 	RUN(test_png_round_trip);
+	RUN(test_png_small);
 	RUN(test_pfm_round_trip);
 	RUN(test_pfm_refusals);
 	RUN(test_exr_storage);
