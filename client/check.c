@@ -45,3 +45,16 @@ SAME(PURSUIT_DAMAGE_RECTANGLES, PURSUIT_MAX_DAMAGE);
 SAME(PURSUIT_SHOWN, PURSUIT_FEEDBACK_SHOWN);
 SAME(PURSUIT_REPLACED, PURSUIT_FEEDBACK_REPLACED);
 SAME(PURSUIT_REFUSED, PURSUIT_FEEDBACK_REFUSED);
+
+/* What programs are compiled with. A change breaks those that are out there: libpursuit_soversion goes up with it. */
+#define STAYS(type, bytes) \
+	_Static_assert(sizeof(void *) != 8 || sizeof(type) == (bytes), #type " changed: raise libpursuit_soversion")
+
+STAYS(struct pursuit_stream_params, 88);
+STAYS(struct pursuit_plane_memory, 24);
+STAYS(struct pursuit_damage, 16);
+STAYS(struct pursuit_frame, 416);
+STAYS(struct pursuit_status, 264);
+STAYS(struct pursuit_feedback_report, 80);
+STAYS(struct pursuit_key, 16);
+STAYS(struct pursuit_gl_textures, 28);

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Holds the house rules: who may include whom, licence headers, file sizes, names that have no place in the tree.
+"""Holds the house rules: who may include whom, licence headers, file sizes, and that each library is on the list
+of docs/architecture.md.
 
 usage: rules.py TOP          checks the tree; exit status 1 if a rule is broken
        rules.py --self-test  plants one breach of each rule in a small tree and sees it found
@@ -42,6 +43,11 @@ ONE_FILE = ("gpiod.h", "GLFW/glfw3.h", "xf86drm.h", "xf86drmMode.h")
 # pure arithmetic: no GL, no socket, no clock
 PURE = ("daemon/present/pacer.", "daemon/measure/")
 IMPURE = re.compile(r"^(EGL|GL|GLES\d)/|^sys/(socket|epoll|eventfd|timerfd|time)\.h$|^(time|pthread|unistd)\.h$")
+
+
+# how a build file asks for a library
+LIBRARY = re.compile(r"\b(?:dependency|find_library)\('([^']+)'")
+LIBRARY_PAGE = "docs/architecture.md"
 
 
 def files(top):
@@ -101,8 +107,29 @@ def check_text(path, text, breaches):
         breaches.append(f"{path}: an unbounded string function")
 
 
+def read(top, path):
+    try:
+        with open(os.path.join(top, path), encoding="utf-8") as file:
+            return file.read()
+    except FileNotFoundError:
+        return ""
+
+
+def check_libraries(top, breaches):
+    builds = ["meson.build"] + [path for path in files(top) if path.endswith("meson.build")]
+    used = {name: path for path in builds for name in LIBRARY.findall(read(top, path))}
+    section = read(top, LIBRARY_PAGE).partition("\n## Libraries\n")[2].partition("\n## ")[0]
+    rows = [row.split("|")[2] for row in section.split("\n") if row.startswith("|")]
+    listed = set(re.findall(r"`([^`]+)`", " ".join(rows)))
+    for name in sorted(used.keys() - listed):
+        breaches.append(f"{used[name]}: library {name} is not on the list in {LIBRARY_PAGE}")
+    for name in sorted(listed - used.keys()):
+        breaches.append(f"{LIBRARY_PAGE}: library {name} is used by no build file")
+
+
 def check(top):
     breaches, behind = [], {}
+    check_libraries(top, breaches)
     for path in files(top):
         if not path.endswith(SOURCE + SHADER + (".py", ".build")):
             continue
@@ -139,6 +166,8 @@ BAD = [
     ("daemon/a.c", SPDX + "\n" * 601, "at most"),
     ("daemon/a.c", SPDX + "int a; \n", "white space"),
     ("daemon/a.c", SPDX + "strcpy(a, b);\n", "unbounded"),
+    ("client/meson.build", "# SPDX-License-Identifier: MIT\ndependency('zlib')\n", "library zlib is not on the list"),
+    (LIBRARY_PAGE, "\n## Libraries\n\n| a | `zlib` | b |\n", "library zlib is used by no build file"),
     ("daemon/lab/a.c", SPDX + "#include <gpiod.h>\n", None),
 ]
 

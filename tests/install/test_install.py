@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Installed into an empty root: everything in its place, used from there, and gone again."""
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -9,8 +10,35 @@ import tempfile
 import time
 import unittest
 
-BUILD, SOURCE, MESON, CC = (os.environ[name] for name in ("BUILD", "SOURCE", "MESON", "CC"))
+BUILD, SOURCE, MESON, CC, VERSION = (os.environ[name] for name in ("BUILD", "SOURCE", "MESON", "CC", "VERSION"))
 SANITIZED = os.environ["SANITIZE"] != "none"
+# What meson remembers of the last `meson install`, for `ninja uninstall`.
+LOG = os.path.join(BUILD, "meson-logs/install-log.txt")
+
+
+class KeptLog:
+    """Whoever installed from this build folder can still uninstall that after the test."""
+
+    def __init__(self):
+        self.text = None
+        if os.path.exists(LOG):
+            with open(LOG, encoding="utf-8") as log:
+                self.text = log.read()
+
+    def put_back(self):
+        if self.text is None:
+            os.remove(LOG)
+        else:
+            with open(LOG, "w", encoding="utf-8") as log:
+                log.write(self.text)
+
+
+def install(root):
+    return run(MESON, "install", "-C", BUILD, "--no-rebuild", "--destdir", root)
+
+
+def files_of(root):
+    return [os.path.relpath(os.path.join(folder, name), root) for folder, _, names in os.walk(root) for name in names]
 
 
 def run(*arguments, **options):
@@ -21,14 +49,14 @@ class Install(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.root = tempfile.mkdtemp(prefix="pursuit-install-")
-        cls.files = []
-        result = run(MESON, "install", "-C", BUILD, "--no-rebuild", "--destdir", cls.root)
+        cls.log = KeptLog()
+        result = install(cls.root)
         assert result.returncode == 0, result.stdout + result.stderr
-        for folder, _, names in os.walk(cls.root):
-            cls.files += [os.path.relpath(os.path.join(folder, name), cls.root) for name in names]
+        cls.files = files_of(cls.root)
 
     @classmethod
     def tearDownClass(cls):
+        cls.log.put_back()
         shutil.rmtree(cls.root)
 
     def find(self, end):
@@ -39,18 +67,42 @@ class Install(unittest.TestCase):
     def test_places(self):
         for end in (
             "/bin/pursuit", "/bin/pursuitd", "/include/pursuit.h", "/libpursuit.so", "/libpursuit.so.0",
-            "/pkgconfig/libpursuit.pc", "/doc/pursuit/LICENSE", "/doc/pursuit/integration.md",
+            "/pkgconfig/libpursuit.pc", "/doc/pursuit/LICENSE", "/doc/pursuit/CHANGELOG.md", "/doc/pursuit/README.md",
+            "/bash-completion/completions/pursuit", "/zsh/site-functions/_pursuit",
+            "/fish/vendor_completions.d/pursuit.fish",
             "/doc/pursuit/examples/example-memory.c", "/doc/pursuit/pictures/mistakes.png",
             "/lib/systemd/system/pursuit.service", "/lib/systemd/system/pursuit.socket",
             "/lib/systemd/user/pursuit.service", "/lib/systemd/user/pursuit.socket", "/lib/sysusers.d/pursuit.conf",
             "/lib/tmpfiles.d/pursuit.conf", "/udev/rules.d/70-pursuit.rules",
         ):
             self.assertTrue(os.path.exists(self.find(end)))
+        for page in os.listdir(os.path.join(SOURCE, "docs")):
+            if page.endswith(".md"):
+                self.find("/doc/pursuit/" + page)
+
+    @unittest.skipUnless(shutil.which("scdoc"), "no scdoc")
+    def test_manual_pages(self):
+        for page in "pursuit.1", "pursuitd.1":
+            with open(self.find("/man/man1/" + page), encoding="utf-8") as text:
+                self.assertIn(".TH", text.read())
+
+    def test_links_of_pages(self):
+        """A page that was installed leads to pages and pictures that were installed."""
+        for name in self.files:
+            if not name.endswith(".md") or "/doc/pursuit/" not in name:
+                continue
+            with open(os.path.join(self.root, name), encoding="utf-8") as page:
+                links = re.findall(r"\]\((?!https?:)([^)#]+\.(?:md|png|svg|html))", page.read())
+            for link in links:
+                beside = link[5:] if os.path.basename(name) in ("README.md", "CHANGELOG.md") else link
+                where = os.path.normpath(os.path.join(os.path.dirname(name), beside))
+                self.assertTrue(os.path.exists(os.path.join(self.root, where)) or "CONTRIBUTING" in link, f"{name}: {link}")
 
     def test_nothing_else(self):
         for name in self.files:
             self.assertNotIn("=", name)
-            self.assertFalse(name.endswith(("meson.build", ".py", ".in")), name)
+            self.assertFalse(name.endswith(("meson.build", ".in")), name)
+            self.assertTrue("/examples/" in name or not name.endswith(".py"), name)
         headers = [name for name in self.files if "/include/" in name]
         self.assertEqual([os.path.basename(name) for name in headers], ["pursuit.h"])
 
@@ -66,6 +118,8 @@ class Install(unittest.TestCase):
                        "PKG_CONFIG_LIBDIR": os.path.dirname(self.find("/libpursuit.pc"))}
         flags = run("pkg-config", "--cflags", "--libs", "libpursuit", env=environment)
         self.assertEqual(flags.returncode, 0, flags.stderr)
+        self.assertEqual(run("pkg-config", "--modversion", "libpursuit", env=environment).stdout.strip(), VERSION)
+        self.assertNotIn(SOURCE, flags.stdout)
         program = os.path.join(self.root, "outside")
         built = run(CC, "-std=c11", "-D_GNU_SOURCE", "-Wall", "-Wextra", "-Werror", self.find("/example-memory.c"), "-o",
                     program, *flags.stdout.split(), "-lm")
@@ -75,6 +129,21 @@ class Install(unittest.TestCase):
         libraries = {**os.environ, "LD_LIBRARY_PATH": os.path.dirname(self.find("/libpursuit.so")),
                      "PURSUIT_SOCKET": os.path.join(self.root, "socket")}
         self.assertEqual(run(program, "--seconds", "0.2", env=libraries).returncode, 0)
+
+    @unittest.skipUnless(shutil.which("ninja"), "no ninja")
+    def test_uninstall(self):
+        """Another root, and a file of somebody else in it: all of ours is gone again, and that one is still there."""
+        with tempfile.TemporaryDirectory(prefix="pursuit-uninstall-") as root, open(LOG, encoding="utf-8") as log:
+            before = log.read()
+            self.assertEqual(install(root).returncode, 0)
+            self.assertEqual(len(files_of(root)), len(self.files))
+            with open(os.path.join(root, "other"), "w", encoding="utf-8"):
+                pass
+            result = run("ninja", "-C", BUILD, "uninstall")
+            with open(LOG, "w", encoding="utf-8") as log:
+                log.write(before)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertEqual(files_of(root), ["other"])
 
     def test_runs_from_there(self):
         """The command finds the daemon that lies beside it."""
