@@ -199,6 +199,7 @@ static void on_wake(void *data, uint32_t events)
 {
 	struct client_stream *entry = data;
 	(void)events;
+	loop_add_work(entry->client->params->loop, 1);
 	atomic_store(&entry->stream->wake_ns, clock_now(entry->client->params->clock));
 	output_wake(entry->client->params->output);
 }
@@ -443,6 +444,7 @@ void client_read(struct client *client, uint32_t events)
 			client->gone = true;
 		if (got <= 0)
 			return;
+		loop_add_work(client->params->loop, 1);
 		if (within_rate(client) && check_packet(client))
 			dispatch(client);
 		packet_finish(client->packet);

@@ -111,6 +111,8 @@ static int acquire(struct render *render, struct presenter_image *image)
 	engine_get_size(render->engine, &width, &height);
 	const int result = stays_in_gl(render) ? presenter->impl->acquire_texture(presenter, width, height, image)
 										   : presenter->impl->acquire(presenter, width, height, image);
+	if (result == -EBUSY)
+		render_expect_flips(render);
 	if (result < 0 && result != -E2BIG)
 		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
 	return result;
@@ -165,6 +167,8 @@ static int queue(struct render *render, struct presenter_image *image, uint64_t 
 	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
 	if (result == 0)
 		render->serial = serial;
+	if (result == 0 || result == -EBUSY)
+		render_expect_flips(render);
 	if (result == 0 && render->tee)
 		tee_add(render->tee, image, render->group, serial);
 	return result;

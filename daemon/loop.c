@@ -25,6 +25,7 @@ struct loop {
 	int epoll;
 	int signals; /* -1: none */
 	bool quit;
+	uint64_t rounds, work;
 	struct loop_source *removed; /* freed after the events at hand: one of them may name it */
 	struct loop_source *signal_source;
 	loop_signal_callback signal_callback;
@@ -131,6 +132,7 @@ int loop_step(struct loop *loop, int timeout_ms, struct error *error)
 	const int count = epoll_wait(loop->epoll, events, EVENTS_AT_ONCE, timeout_ms);
 	if (count < 0)
 		return errno == EINTR ? 0 : error_set(error, -errno, "epoll_wait: %s", strerror(errno));
+	loop->rounds++;
 	for (int i = 0; i < count; i++) {
 		const struct loop_source *source = events[i].data.ptr;
 		if (!source->removed)
@@ -148,6 +150,21 @@ int loop_run(struct loop *loop, struct error *error)
 			return result;
 	}
 	return 0;
+}
+
+uint64_t loop_get_rounds(const struct loop *loop)
+{
+	return loop->rounds;
+}
+
+uint64_t loop_get_work(const struct loop *loop)
+{
+	return loop->work;
+}
+
+void loop_add_work(struct loop *loop, uint32_t pieces)
+{
+	loop->work += pieces;
 }
 
 void loop_quit(struct loop *loop)

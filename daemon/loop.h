@@ -39,6 +39,15 @@ int loop_add_signals(struct loop *loop, const int *numbers, unsigned count, loop
 int loop_run(struct loop *loop, struct error *error);
 void loop_quit(struct loop *loop);
 
+/*
+ * Whether it works or spins: rounds that it has gone, and pieces of work that its callbacks have told of (a message, a
+ * connection, a wake-up: what others can cause at any rate). Far more rounds than work is a descriptor that stays
+ * ready because nobody takes what is there.
+ */
+uint64_t loop_get_rounds(const struct loop *loop);
+uint64_t loop_get_work(const struct loop *loop);
+void loop_add_work(struct loop *loop, uint32_t pieces);
+
 /* Handles what is due now and returns; for tests. timeout_ms as for epoll_wait(). */
 int loop_step(struct loop *loop, int timeout_ms, struct error *error);
 

@@ -20,9 +20,11 @@
 struct watchdog {
 	const struct log *log;
 	struct output *output;
+	struct loop *loop;
 	int timer_fd;
 	struct loop_source *source;
-	uint64_t beats;
+	double step_s; /* between looks */
+	uint64_t beats, rounds, work;
 	bool stuck;
 };
 
@@ -67,19 +69,30 @@ void notify_stopping(const struct log *log)
 
 /* ---- the watchdog ---- */
 
+/* Since the last look, which was `looks` steps ago. */
+static bool spins(struct watchdog *watchdog, uint64_t looks)
+{
+	const uint64_t rounds = loop_get_rounds(watchdog->loop), work = loop_get_work(watchdog->loop);
+	const double gone = (double)(rounds - watchdog->rounds), done = (double)(work - watchdog->work);
+	watchdog->rounds = rounds;
+	watchdog->work = work;
+	return gone - done > WATCHDOG_ROUNDS * watchdog->step_s * (double)looks;
+}
+
 static void on_timer(void *data, uint32_t events)
 {
 	struct watchdog *watchdog = data;
-	uint64_t count;
+	uint64_t looks;
 	(void)events;
-	if (read(watchdog->timer_fd, &count, sizeof(count)) < 0)
+	if (read(watchdog->timer_fd, &looks, sizeof(looks)) < 0)
 		return;
 	const uint64_t beats = output_beats(watchdog->output);
-	const bool stuck = beats == watchdog->beats;
+	const bool stands = beats == watchdog->beats, spinning = spins(watchdog, looks), stuck = stands || spinning;
 	if (!stuck)
 		notify_send(watchdog->log, "WATCHDOG=1");
 	else if (!watchdog->stuck)
-		log_error(watchdog->log, "the presentation loop is stuck: the watchdog is not fed");
+		log_error(watchdog->log, "%s: the watchdog is not fed",
+				  stands ? "the presentation loop is stuck, or its display" : "the main loop spins");
 	watchdog->stuck = stuck;
 	watchdog->beats = beats;
 	output_wake(watchdog->output);
@@ -115,7 +128,14 @@ int watchdog_create(struct watchdog **watchdog, struct loop *loop, const struct 
 	struct watchdog *self = calloc(1, sizeof(*self));
 	if (!self)
 		return error_set(error, -ENOMEM, "watchdog: out of memory");
-	*self = (struct watchdog){.log = log, .output = output, .timer_fd = -1, .beats = UINT64_MAX};
+	*self = (struct watchdog){.log = log,
+							  .output = output,
+							  .loop = loop,
+							  .timer_fd = -1,
+							  .step_s = (double)interval_us / LOOKS * 1e-6,
+							  .beats = UINT64_MAX,
+							  .rounds = loop_get_rounds(loop),
+							  .work = loop_get_work(loop)};
 	int result = start_timer(self, interval_us);
 	if (result == 0) {
 		self->source = loop_add(loop, self->timer_fd, EPOLLIN, on_timer, self);

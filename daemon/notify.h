@@ -8,8 +8,11 @@
  *
  * The watchdog is fed from the presentation loop: at each third of the interval
  * main looks whether the render thread has gone round since the last look, tells
- * systemd if so, and wakes it. An idle loop goes round because it is woken, a
- * stuck one does not, and the service is restarted.
+ * systemd if so, and wakes it. An idle loop goes round because it is woken; a
+ * stuck one does not, one whose presenter reports no vblanks does not count
+ * (output_beats()), and the service is restarted. So it is if main does not come
+ * to look, or has gone round its own loop more than WATCHDOG_ROUNDS times a
+ * second for nothing.
  *
  * On main.
  */
@@ -26,6 +29,9 @@ void notify_send(const struct log *log, const char *state);
 void notify_ready(const struct log *log);
 void notify_reloading(const struct log *log);
 void notify_stopping(const struct log *log);
+
+/* Rounds of main's loop a second beyond what there was to do (loop_get_work()); a mouse makes up to 8,000. */
+#define WATCHDOG_ROUNDS 20000u
 
 struct watchdog;
 

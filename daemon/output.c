@@ -256,21 +256,6 @@ static bool read_mailbox(struct output *output)
 	return go_on;
 }
 
-static int start_tee(struct output *output, struct error *error)
-{
-	const struct settings *settings = &output->settings;
-	const struct tee_params params = {
-		.path = settings->tee,
-		.log = output->params.log,
-		.refresh_numerator = settings->refresh_numerator,
-		.refresh_denominator = settings->refresh_denominator,
-	};
-	if (!*settings->tee)
-		return 0;
-	output->render.tee = tee_create(&params, error);
-	return output->render.tee ? 0 : -EIO;
-}
-
 static int start(struct output *output)
 {
 	output->render = (struct render){
@@ -290,7 +275,7 @@ static int start(struct output *output)
 	output->presenter_changed = false;
 	pthread_mutex_unlock(&output->lock);
 	change_presenter(output, presenter);
-	const int result = start_tee(output, &error) < 0 ? -EIO : draw_make_engine(&output->render, &error);
+	const int result = render_start(&output->render, &error);
 	pthread_mutex_lock(&output->lock);
 	output->started = true;
 	output->start_result = result;
@@ -308,7 +293,8 @@ static void *run(void *data)
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	if (start(output) == 0) {
 		while (read_mailbox(output)) {
-			atomic_fetch_add_explicit(&output->beats, 1, memory_order_relaxed);
+			if (!render_is_stuck(&output->render))
+				atomic_fetch_add_explicit(&output->beats, 1, memory_order_relaxed);
 			const uint64_t next_ns = render_step(&output->render);
 			if (next_ns > clock_now(output->params.clock)) {
 				publish_stats(output);

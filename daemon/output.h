@@ -84,7 +84,10 @@ void output_destroy(struct output **output);
 bool output_add_stream(struct output *output, struct stream *stream);
 void output_remove_stream(struct output *output, struct stream *stream);
 
-/* How often the render thread has gone round; it stands still when that sleeps or is stuck. */
+/*
+ * How often the render thread has gone round with all well; it stands still when that sleeps or is stuck, and while
+ * the presenter reports no vblanks though it should (render_is_stuck()).
+ */
 uint64_t output_beats(const struct output *output);
 
 /* Shows the newest stream of this client from the next vblank that it has a frame for. False: it has none. */

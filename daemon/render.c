@@ -12,8 +12,31 @@
 #define PLAIN_AFTER 30u
 /* And then the presenter sleeps, once that picture has been shown. */
 #define SLEEP_AFTER (PLAIN_AFTER + 4u)
+/* A presenter that is given some pictures and says nothing for so long and so many vblanks hangs. */
+#define STUCK_PICTURES 3u
+#define STUCK_NS UINT64_C(2000000000)
+#define STUCK_VBLANKS 8.0
+/* Nothing was to be shown for so long: whatever it was, it hurts nobody. */
+#define FORGIVEN_NS UINT64_C(5000000000)
 /* Before anything was measured. */
 #define FIRST_COST_NS UINT64_C(5000000)
+
+int render_start(struct render *render, struct error *error)
+{
+	const struct settings *settings = render->settings;
+	const struct tee_params params = {
+		.path = settings->tee,
+		.log = render->log,
+		.refresh_numerator = settings->refresh_numerator,
+		.refresh_denominator = settings->refresh_denominator,
+	};
+	if (*settings->tee) {
+		render->tee = tee_create(&params, error);
+		if (!render->tee)
+			return -EIO;
+	}
+	return draw_make_engine(render, error);
+}
 
 void render_finish(struct render *render)
 {
@@ -40,6 +63,7 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	showing_finish(&render->showing);
 	render->presenter = presenter;
 	draw_follow_context(render);
+	render->unanswered.pictures = 0;
 	if (presenter) {
 		render->grid = presenter->impl->get_grid(presenter);
 		render->lead_ns = presenter->impl->get_lead(presenter);
@@ -161,6 +185,7 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 {
 	if (!render->presenter)
 		return;
+	render->unanswered.pictures = 0;
 	showing_flip(&render->showing, flip);
 	if (render->tee)
 		tee_flip(render->tee, flip);
@@ -362,6 +387,22 @@ static uint64_t show_between(struct render *render, uint64_t now_ns, bool urgent
 					 render->between_cost.usual_ns / 8 * 7); /* or it would never be tried again */
 	}
 	return 0;
+}
+
+void render_expect_flips(struct render *render)
+{
+	const uint64_t now_ns = clock_now(render->clock);
+	if (render->unanswered.pictures++ == 0)
+		render->unanswered.first_ns = now_ns;
+	render->unanswered.last_ns = now_ns;
+}
+
+bool render_is_stuck(const struct render *render)
+{
+	const uint64_t now_ns = clock_now(render->clock);
+	const uint64_t patience_ns = STUCK_NS + (uint64_t)(STUCK_VBLANKS * grid_period_ns(&render->grid));
+	return render->presenter && render->unanswered.pictures >= STUCK_PICTURES &&
+		   now_ns - render->unanswered.first_ns > patience_ns && now_ns - render->unanswered.last_ns < FORGIVEN_NS;
 }
 
 uint64_t render_step(struct render *render)

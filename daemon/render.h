@@ -80,6 +80,10 @@ struct render {
 	uint64_t next_vblank;   /* first one that was not decided */
 	uint32_t pause_vblanks; /* that nothing was due at, in a row */
 	bool paused;            /* the presenter sleeps */
+	struct {
+		uint32_t pictures;          /* queued, or without room for them, since the last vblank that was reported */
+		uint64_t first_ns, last_ns; /* when that was */
+	} unanswered;
 	struct cost real_cost, between_cost, plain_cost;
 	struct governor governor;
 	bool passes_through;   /* the engine makes nothing of frames but a picture */
@@ -88,6 +92,8 @@ struct render {
 	uint64_t margin_ns;    /* on top of real_cost: grows with each late real frame, shrinks with each that is in time */
 };
 
+/* Begins the file of what is shown, if one is wished for, and makes the engine. 0 or -errno with a sentence. */
+int render_start(struct render *render, struct error *error);
 void render_finish(struct render *render);
 
 /*
@@ -112,6 +118,9 @@ void render_skip_frames(struct render *render, struct stream *stream);
 /* A vblank is over. */
 void render_flip(struct render *render, const struct presenter_flip *flip);
 
+/* Has the presenter reported no vblank for long, though there were pictures for it? Idle is not stuck. */
+bool render_is_stuck(const struct render *render);
+
 /* Does one thing, or nothing. The time when the next step is due: 0 at once, RENDER_NEVER only when something happens.
  */
 uint64_t render_step(struct render *render);
@@ -124,6 +133,9 @@ uint64_t render_first_vblank(const struct render *render);
 
 /* What a real frame from its intake to its picture, there as early as the presenter wants it, is expected to take. */
 uint64_t render_real_cost(const struct render *render);
+
+/* A picture was queued, or would have been if the presenter had room: vblanks are to be reported from now on. */
+void render_expect_flips(struct render *render);
 
 /* ---- draw.c ---- */
 

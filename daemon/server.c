@@ -65,6 +65,7 @@ static void remove_gone(struct server *server)
 static void on_client(void *data, uint32_t events)
 {
 	struct client *client = data;
+	loop_add_work(client->params->loop, (events & (EPOLLHUP | EPOLLERR)) != 0);
 	struct server *server = (struct server *)((uintptr_t)client->params - offsetof(struct server, params));
 	client_read(client, events);
 	remove_gone(server);
@@ -144,6 +145,7 @@ static void hang_up_one(struct server *server)
 	const int fd = accept4(server->listener.fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 	if (fd >= 0)
 		close(fd);
+	loop_add_work(server->params.loop, fd >= 0);
 	server->reserve_fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
 	log_error(server->params.log, "out of file descriptors: a client was turned away");
 }
@@ -155,6 +157,7 @@ static void on_accept(void *data, uint32_t events)
 	for (int i = 0; i < ACCEPT_AT_ONCE; i++) {
 		const int fd = accept4(server->listener.fd, NULL, NULL, SOCK_CLOEXEC | SOCK_NONBLOCK);
 		if (fd >= 0) {
+			loop_add_work(server->params.loop, 1);
 			add_client(server, fd);
 		} else if (errno == EMFILE || errno == ENFILE) {
 			hang_up_one(server);
@@ -173,6 +176,7 @@ static void on_output_event(void *data, uint32_t events)
 	struct output_event event;
 	(void)events;
 	while (output_next_event(server->params.output, &event)) {
+		loop_add_work(server->params.loop, 1);
 		if (event.kind == OUTPUT_KEY) {
 			server->params.key(server->params.key_data, &event.key);
 			continue;

@@ -59,7 +59,8 @@ static void forget_messages(void)
 
 /* ---- the watchdog ---- */
 
-static pid_t render_thread(void)
+/* By the beginning of its name. */
+static pid_t find_thread(const char *wanted)
 {
 	char path[300], name[32] = "";
 	pid_t found = 0;
@@ -72,7 +73,7 @@ static pid_t render_thread(void)
 		if (fd >= 0)
 			close(fd);
 		name[got > 0 ? got : 0] = 0;
-		if (strncmp(name, "pursuit-render", 14) == 0)
+		if (strncmp(name, wanted, strlen(wanted)) == 0)
 			found = (pid_t)atoi(entry->d_name);
 	}
 	if (folder)
@@ -80,24 +81,88 @@ static pid_t render_thread(void)
 	return found;
 }
 
+/* Makes one thread stand still. False: that is not permitted here. */
+static bool hold(pid_t thread)
+{
+	CHECK(thread > 0);
+	if (ptrace(PTRACE_SEIZE, thread, NULL, NULL) < 0 || ptrace(PTRACE_INTERRUPT, thread, NULL, NULL) < 0) {
+		printf("       ptrace is not permitted: threads that hang are not tried\n");
+		return false;
+	}
+	waitpid(thread, NULL, __WALL);
+	return true;
+}
+
+static void let_go(pid_t thread)
+{
+	CHECK_INT(ptrace(PTRACE_DETACH, thread, NULL, NULL), 0);
+	CHECK(told("WATCHDOG=1", 20000));
+}
+
+static void check_not_fed(void)
+{
+	sleep_ms(INTERVAL_MS);
+	forget_messages();
+	CHECK(!told("WATCHDOG=1", 3 * INTERVAL_MS));
+}
+
 /* Only the presentation loop stands still; main goes on, and must not feed the watchdog for it. */
 static void check_stuck_loop(void)
 {
-	const pid_t thread = render_thread();
-	CHECK(thread > 0);
-	if (ptrace(PTRACE_SEIZE, thread, NULL, NULL) < 0 || ptrace(PTRACE_INTERRUPT, thread, NULL, NULL) < 0) {
-		printf("       ptrace is not permitted: a stuck loop is not tried\n");
+	const pid_t thread = find_thread("pursuit-render");
+	if (!hold(thread))
 		return;
-	}
-	waitpid(thread, NULL, __WALL);
 	CHECK(fixture_logged(&fixture, "the presentation loop is stuck"));
-	forget_messages();
-	CHECK(!told("WATCHDOG=1", 3 * INTERVAL_MS));
+	check_not_fed();
 	const int fd = raw_greet(fixture.socket); /* main is well, which is why a ping of main would not do */
 	CHECK(fd >= 0);
 	close(fd);
-	CHECK_INT(ptrace(PTRACE_DETACH, thread, NULL, NULL), 0);
-	CHECK(told("WATCHDOG=1", 20000));
+	let_go(thread);
+}
+
+/* Only main stands still; pictures go on. */
+static void check_stuck_main(void)
+{
+	if (!hold(fixture.pid))
+		return;
+	check_not_fed();
+	let_go(fixture.pid);
+}
+
+static void play(struct raw_stream *stream, int frames);
+
+/* Frames that nobody waits for. */
+static void pump(struct raw_stream *stream, unsigned ms)
+{
+	for (const uint64_t end = now_ns() + ms * UINT64_C(1000000); now_ns() < end; sleep_ms(12)) {
+		raw_fill(stream);
+		raw_publish(stream);
+	}
+}
+
+/* The presenter's thread stands still while a client shows frames; the loop goes round, to no avail. */
+static void check_stuck_presenter(void)
+{
+	static struct raw_reply reply;
+	struct raw_stream stream;
+	const pid_t thread = find_thread("pursuit-flip");
+	const int fd = raw_greet(fixture.socket);
+	CHECK(fd >= 0);
+	raw_stream_init(&stream, fd, 1);
+	CHECK(raw_stream_open(&stream, &reply));
+	play(&stream, 3);
+	if (hold(thread)) {
+		pump(&stream, 2500 + 3 * INTERVAL_MS);
+		CHECK(fixture_logged(&fixture, "stuck, or its display"));
+		forget_messages();
+		pump(&stream, 3 * INTERVAL_MS);
+		CHECK(!told("WATCHDOG=1", 1));
+		let_go(thread);
+		pump(&stream, 100);
+		CHECK(told("WATCHDOG=1", 20000));
+	}
+	raw_stream_finish(&stream);
+	close(fd);
 }
 
 static void test_watchdog(void)
@@ -108,6 +173,8 @@ static void test_watchdog(void)
 	/* Idle: no client, nothing to show. */
 	for (int i = 0; i < 4; i++)
 		CHECK(told("WATCHDOG=1", 20000));
+	check_stuck_presenter();
+	check_stuck_main();
 	check_stuck_loop();
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 	CHECK(told("STOPPING=1", 5000));
