@@ -7,6 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/engine/pool.h"
+
+/* Triangles are counted and filled in by chunks, as many as keep all threads busy; each chunk counts for each tile. */
+#define CHUNKS_OF_THREAD 2u
+#define LEAST_TRIANGLES 1024u
+#define VERTICES_OF_ITEM 4096u
+
 struct bin_range {
 	uint16_t left, right, top, bottom; /* tiles; right and bottom excluded */
 };
@@ -51,53 +58,101 @@ static struct bin_range range_of(const struct scene *scene, const uint32_t *inde
 	return range;
 }
 
-/* How many triangles each tile gets, at starts[tile + 1]; how many that makes. */
-static size_t count_all(struct scene *scene, uint32_t triangles)
+/* A sort under way: the chunks' triangles, one after another in drawing order. */
+struct sort {
+	struct scene *scene;
+	uint32_t triangles, chunks;
+};
+
+static uint32_t begin_of(const struct sort *sort, uint32_t chunk)
 {
-	struct bins *bins = &scene->bins;
-	size_t sum = 0;
-	memset(bins->starts, 0, ((size_t)scene_tiles(scene) + 1) * sizeof(*bins->starts));
-	for (uint32_t i = 0; i < triangles; i++) {
+	return (uint32_t)((uint64_t)sort->triangles * chunk / sort->chunks);
+}
+
+static uint32_t *cursors_of(const struct sort *sort, uint32_t chunk)
+{
+	return sort->scene->bins.cursors + (size_t)chunk * scene_tiles(sort->scene);
+}
+
+/* How many of its triangles each tile gets. */
+static void count_chunk(void *context, uint32_t chunk, uint32_t thread)
+{
+	const struct sort *sort = context;
+	const struct scene *scene = sort->scene;
+	const struct bins *bins = &scene->bins;
+	uint32_t *counts = cursors_of(sort, chunk);
+	memset(counts, 0, scene_tiles(scene) * sizeof(*counts));
+	for (uint32_t i = begin_of(sort, chunk); i < begin_of(sort, chunk + 1); i++) {
 		struct bin_range range = range_of(scene, scene->mesh->lists + 3 * (size_t)i);
 		bins->ranges[i] = range;
 		for (uint32_t row = range.top; row < range.bottom; row++)
-			for (uint32_t column = range.left; column < range.right; column++, sum++)
-				bins->starts[row * bins->columns + column + 1]++;
+			for (uint32_t column = range.left; column < range.right; column++)
+				counts[row * bins->columns + column]++;
 	}
-	return sum;
 }
 
-/* The triangles behind each other, tile by tile, each tile's in drawing order. */
-static void fill_all(struct bins *bins, uint32_t triangles)
+/* Where the triangles of each tile begin, and in them those of each chunk; how many there are. */
+static size_t place(const struct sort *sort)
 {
-	uint32_t tiles = bins->columns * bins->rows;
-	for (uint32_t i = 0; i < tiles; i++) {
-		bins->ends[i] = bins->starts[i];
-		bins->starts[i + 1] += bins->starts[i];
+	struct bins *bins = &sort->scene->bins;
+	const uint32_t tiles = scene_tiles(sort->scene);
+	uint32_t at = 0;
+	for (uint32_t tile = 0; tile < tiles; tile++) {
+		bins->starts[tile] = at;
+		for (uint32_t chunk = 0; chunk < sort->chunks; chunk++) {
+			uint32_t *cursor = cursors_of(sort, chunk) + tile;
+			const uint32_t count = *cursor;
+			*cursor = at;
+			at += count;
+		}
 	}
-	for (uint32_t i = 0; i < triangles; i++) {
+	bins->starts[tiles] = at;
+	return at;
+}
+
+static void fill_chunk(void *context, uint32_t chunk, uint32_t thread)
+{
+	const struct sort *sort = context;
+	const struct bins *bins = &sort->scene->bins;
+	uint32_t *cursors = cursors_of(sort, chunk);
+	for (uint32_t i = begin_of(sort, chunk); i < begin_of(sort, chunk + 1); i++) {
 		struct bin_range range = bins->ranges[i];
 		for (uint32_t row = range.top; row < range.bottom; row++)
 			for (uint32_t column = range.left; column < range.right; column++)
-				bins->triangles[bins->ends[row * bins->columns + column]++] = 3 * i;
+				bins->triangles[cursors[row * bins->columns + column]++] = 3 * i;
+	}
+}
+
+static void displace_some(void *context, uint32_t item, uint32_t thread)
+{
+	const struct scene *scene = context;
+	const struct plan *plan = scene->mesh->plan;
+	const size_t count = (size_t)plan->columns * plan->rows, end = (item + 1) * (size_t)VERTICES_OF_ITEM;
+	float *x = scene->positions, *y = x + count;
+	for (size_t i = item * (size_t)VERTICES_OF_ITEM; i < end && i < count; i++) {
+		const struct plan_vertex *vertex = &plan->vertices[i];
+		x[i] = vertex->x + scene->phase * vertex->ux;
+		y[i] = vertex->y + scene->phase * vertex->uy;
 	}
 }
 
 static bool displace(struct scene *scene)
 {
 	const struct plan *plan = scene->mesh->plan;
-	size_t count = (size_t)plan->columns * plan->rows;
-	if (!reserve((void **)&scene->positions, &scene->position_bytes, 2 * count * sizeof(float)))
+	const uint32_t count = plan->columns * plan->rows;
+	if (!reserve((void **)&scene->positions, &scene->position_bytes, 2 * (size_t)count * sizeof(float)))
 		return false;
-	float *x = scene->positions, *y = x + count;
-	for (size_t i = 0; i < count; i++) {
-		const struct plan_vertex *vertex = &plan->vertices[i];
-		x[i] = vertex->x + scene->phase * vertex->ux;
-		y[i] = vertex->y + scene->phase * vertex->uy;
-	}
-	scene->x = x;
-	scene->y = y;
+	scene->x = scene->positions;
+	scene->y = scene->positions + count;
+	pool_run(scene->mesh->pool, displace_some, scene, (count + VERTICES_OF_ITEM - 1) / VERTICES_OF_ITEM);
 	return true;
+}
+
+static uint32_t count_chunks(const struct scene *scene, uint32_t triangles)
+{
+	const uint32_t threads = pool_threads(scene->mesh->pool), most = triangles / LEAST_TRIANGLES;
+	const uint32_t count = threads > 1 ? CHUNKS_OF_THREAD * threads : 1;
+	return count < most ? count : most ? most : 1;
 }
 
 static bool sort(struct scene *scene)
@@ -105,18 +160,20 @@ static bool sort(struct scene *scene)
 	struct bins *bins = &scene->bins;
 	const struct warp_mesh *mesh = scene->mesh;
 	/* With the order kept, what is folded and torn stands among the folded. */
-	uint32_t triangles = (mesh->keep_order ? mesh->folded_torn.first : mesh->list_count) / 3;
+	const uint32_t triangles = (mesh->keep_order ? mesh->folded_torn.first : mesh->list_count) / 3;
+	struct sort sort = {scene, triangles, count_chunks(scene, triangles)};
 	bins->columns = (scene->width + TILE_WIDTH - 1) / TILE_WIDTH;
 	bins->rows = (scene->height + TILE_HEIGHT - 1) / TILE_HEIGHT;
-	size_t tile_bytes = ((size_t)scene_tiles(scene) + 1) * sizeof(uint32_t);
+	const size_t tile_bytes = ((size_t)scene_tiles(scene) + 1) * sizeof(uint32_t);
 	if (!reserve((void **)&bins->starts, &bins->start_bytes, tile_bytes) ||
-		!reserve((void **)&bins->ends, &bins->end_bytes, tile_bytes) ||
+		!reserve((void **)&bins->cursors, &bins->cursor_bytes, sort.chunks * tile_bytes) ||
 		!reserve((void **)&bins->ranges, &bins->range_bytes, triangles * sizeof(*bins->ranges)))
 		return false;
-	size_t sum = count_all(scene, triangles);
+	pool_run(mesh->pool, count_chunk, &sort, sort.chunks);
+	const size_t sum = place(&sort);
 	if (!reserve((void **)&bins->triangles, &bins->triangle_bytes, sum * sizeof(uint32_t)))
 		return false;
-	fill_all(bins, triangles);
+	pool_run(mesh->pool, fill_chunk, &sort, sort.chunks);
 	return true;
 }
 
@@ -132,7 +189,7 @@ void scene_finish(struct scene *scene)
 {
 	free(scene->positions);
 	free(scene->bins.starts);
-	free(scene->bins.ends);
+	free(scene->bins.cursors);
 	free(scene->bins.triangles);
 	free(scene->bins.ranges);
 	*scene = (struct scene){0};

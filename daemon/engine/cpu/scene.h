@@ -24,10 +24,10 @@
 struct bins {
 	uint32_t columns, rows; /* of tiles */
 	uint32_t *starts;       /* columns x rows + 1: where the triangles of a tile begin */
-	uint32_t *ends;         /* and end */
+	uint32_t *cursors;      /* by chunk of triangles and tile: how many there are, then where they go */
 	uint32_t *triangles;
 	struct bin_range *ranges; /* by triangle: which tiles */
-	size_t start_bytes, end_bytes, triangle_bytes, range_bytes;
+	size_t start_bytes, cursor_bytes, triangle_bytes, range_bytes;
 };
 
 struct scene {
