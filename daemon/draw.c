@@ -389,6 +389,7 @@ void draw_real(struct render *render, uint64_t now_ns)
 {
 	struct presenter_image image;
 	draw_count_report(render);
+	render->show_held = false;
 	if (render->paused)
 		render_follow_grid(render);
 	if (!take(render, now_ns)) {
@@ -438,6 +439,19 @@ void draw_empty(struct render *render, uint64_t vblank)
 		impl->release(render->presenter, &image);
 	else
 		render->front_black = true;
+}
+
+void draw_held(struct render *render, uint64_t vblank)
+{
+	const struct pacer_decision decision = {.n = 1, .target_ns = grid_time(&render->grid, vblank)};
+	draw_count_report(render);
+	if (render->settings_changed)
+		set_params(render);
+	render->stream_number = render->frame.stream;
+	render->orphan = false;
+	render->group++;
+	if (begin(render, &decision))
+		draw_plain(render, vblank);
 }
 
 void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank)

@@ -229,6 +229,7 @@ int stream_take(struct stream *stream, uint64_t now_ns, struct frame *frame, str
 					  " and not the daemon's own (%" PRIu32 "); the stream is ended",
 					  slot, stream->slot_count, stream->held_slot);
 	stream->held_slot = slot;
+	stream->held.header.plane_count = 0;
 	/* FRESH cannot come back unset between the two: only the client writes it, and a lie about it costs only a look. */
 	memset(frame, 0, sizeof(*frame));
 	memcpy(&frame->header, &stream->control->headers[slot], sizeof(frame->header));
@@ -240,7 +241,14 @@ int stream_take(struct stream *stream, uint64_t now_ns, struct frame *frame, str
 	frame->stream = stream->number;
 	frame->intake_ns = intake_time(stream, frame->header.submit_ns, now_ns);
 	count_frame(stream, &frame->header);
+	stream->held = *frame;
 	return 1;
+}
+
+bool stream_get_held(const struct stream *stream, struct frame *frame)
+{
+	*frame = stream->held;
+	return frame->header.plane_count > 0;
 }
 
 /* ---- feedback ---- */

@@ -54,6 +54,7 @@ struct stream {
 	uint64_t slot_bytes;
 	uint32_t slot_count;
 	uint32_t held_slot;
+	struct frame held; /* the frame in that slot, as it was taken; no planes: none, or it was refused */
 	uint64_t feedback_count, hint_count;
 	uint64_t last_id, last_time_ns;
 	struct log_limit log_limit; /* render thread */
@@ -90,6 +91,12 @@ bool stream_has_frame(const struct stream *stream);
  * the rules of the exchange and is to be ended. now_ns: the time of this call.
  */
 int stream_take(struct stream *stream, uint64_t now_ns, struct frame *frame, struct refusal *refusal);
+
+/*
+ * The frame that was taken last, once more: its slot is lent until the next is taken. For a stream that is shown again
+ * and has stopped. False: there is none.
+ */
+bool stream_get_held(const struct stream *stream, struct frame *frame);
 
 /* Writes one report into the feedback ring; `sequence` and `reserved` are filled in. */
 void stream_feedback(struct stream *stream, const struct pursuit_feedback *report);

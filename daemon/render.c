@@ -57,6 +57,13 @@ static void start_pacer(struct render *render)
 	pacer_init(&render->pacer, &params);
 }
 
+/* Nothing of the stream's is shown: its last frame is due, unless a newer one comes first. */
+static void want_held(struct render *render)
+{
+	render->show_held =
+		render->stream && !atomic_load(&render->stream->ended) && stream_get_held(render->stream, &render->frame);
+}
+
 void render_set_presenter(struct render *render, struct presenter *presenter)
 {
 	close_all_frames(render);
@@ -76,6 +83,7 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	render->real_vblank = render->next_vblank = 0;
 	render->pause_vblanks = 0;
 	render->paused = true;
+	want_held(render);
 }
 
 bool render_follow_grid(struct render *render)
@@ -112,6 +120,7 @@ void render_set_streams(struct render *render, struct stream *const *streams, ui
 		return;
 	render->stream = shown;
 	start_pacer(render);
+	want_held(render);
 }
 
 void render_set_view(struct render *render, uint32_t switches)
@@ -297,21 +306,25 @@ static void pause_once(struct render *render)
 	}
 }
 
-/* The picture that stays is drawn again, as the view is now; then all sleeps again. */
+/* The picture that stays is drawn again, as the view is now, or that of another stream; then all sleeps again. */
 static void draw_still_anew(struct render *render, uint64_t now_ns)
 {
-	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + estimate(render, &render->plain_cost));
+	const uint64_t cost = render->show_held ? render_real_cost(render) : estimate(render, &render->plain_cost);
+	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + cost);
 	render->redraw = false;
-	if ((!wants_black(render) && !render->begun) || !render->engine)
+	if ((!wants_black(render) && !render->begun && !render->show_held) || !render->engine)
 		return;
 	if (vblank > render->next_vblank)
 		render->next_vblank = vblank;
 	render->pause_vblanks = PLAIN_AFTER;
 	render->paused = false;
-	if (wants_black(render))
+	if (render->show_held)
+		draw_held(render, render->next_vblank);
+	else if (wants_black(render))
 		draw_empty(render, render->next_vblank);
 	else
 		draw_plain(render, render->next_vblank);
+	render->show_held = false;
 	showing_plan(&render->showing, render->next_vblank++, SHOWING_PAUSE);
 }
 
@@ -416,8 +429,11 @@ uint64_t render_step(struct render *render)
 			render_skip_frames(render, render->stream);
 		return RENDER_NEVER;
 	}
+	const bool lost = !render->engine;
 	if (!draw_revive_engine(render, now_ns))
 		return render->engine_retry_ns;
+	if (lost)
+		want_held(render);
 	skip_passed(render, now_ns);
 	if (render->stream && !atomic_load(&render->stream->ended) && stream_has_frame(render->stream)) {
 		wake_ns = later_of(real_start(render, now_ns), render->take_again_ns);
@@ -429,7 +445,8 @@ uint64_t render_step(struct render *render)
 	}
 	if (view_message_is_over(&render->view, now_ns))
 		render->redraw = true;
-	if (render->redraw && (render->pause_vblanks >= PLAIN_AFTER || render->group == 0))
+	const bool other = render->show_held && wake_ns == RENDER_NEVER;
+	if (other || (render->redraw && (render->pause_vblanks >= PLAIN_AFTER || render->group == 0)))
 		draw_still_anew(render, now_ns);
 	if (render->paused)
 		return sooner_of(wake_ns, view_message_end(&render->view));

@@ -59,6 +59,7 @@ struct render {
 	struct tee *tee;       /* NULL: none */
 	bool settings_changed; /* the engine does not know yet */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
+	bool show_held;        /* `frame`, which the stream still lends, is due once more, unless a newer one comes first */
 	struct stats *stats;   /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
 
@@ -143,6 +144,8 @@ void render_expect_flips(struct render *render);
 void draw_real(struct render *render, uint64_t now_ns);
 /* Draws the in-between that was decided for this vblank. */
 void draw_in_between(struct render *render, const struct pacer_decision *decision, uint64_t vblank);
+/* Begins render->frame, which was shown before or would have been, and draws it, to stay from this vblank on. */
+void draw_held(struct render *render, uint64_t vblank);
 /* Draws the plain picture, as standby or, for a vblank > 0, to be shown there. */
 void draw_plain(struct render *render, uint64_t vblank);
 /* Queues a black picture with what is drawn over it: before the first frame, and when its client has gone. */
