@@ -17,17 +17,25 @@
 /* A presenter that is lost sooner than this after it was made has not helped. */
 #define GOOD_LIFE (2 * SECOND)
 
+/* A presenter and what was heard of it. */
+struct slot {
+	struct display *display;
+	struct presenter *presenter;
+	bool lost; /* with the display's lock, as the sentence */
+	char sentence[256];
+};
+
 struct display {
 	struct display_params params;
-	struct presenter *presenter;
+	struct slot slots[2];
+	struct slot *now, *next; /* in use, NULL none; better than it, to be used as soon as that is gone, mostly NULL */
 	struct loop_source *presenter_source, *wake_source, *retry_source;
 	int wake_fd, retry_fd;
 	uint64_t made_ns, delay_ns;
 	bool taken_away; /* the user was told, and has not answered */
 
 	pthread_mutex_t lock; /* for what other threads say */
-	bool lost, let_go;
-	char sentence[256];
+	bool let_go;
 };
 
 static void wake(struct display *display)
@@ -41,11 +49,12 @@ static void wake(struct display *display)
 /* On any thread. */
 static void on_lost(void *data, const char *sentence)
 {
-	struct display *display = data;
+	struct slot *slot = data;
+	struct display *display = slot->display;
 	pthread_mutex_lock(&display->lock);
-	if (!display->lost)
-		snprintf(display->sentence, sizeof(display->sentence), "%s", sentence);
-	display->lost = true;
+	if (!slot->lost)
+		snprintf(slot->sentence, sizeof(slot->sentence), "%s", sentence);
+	slot->lost = true;
 	pthread_mutex_unlock(&display->lock);
 	wake(display);
 }
@@ -53,10 +62,10 @@ static void on_lost(void *data, const char *sentence)
 /* On main: what is made next is another one. */
 static void on_failed(void *data)
 {
-	struct display *display = data;
-	pthread_mutex_lock(&display->lock);
-	display->lost = false;
-	pthread_mutex_unlock(&display->lock);
+	struct slot *slot = data;
+	pthread_mutex_lock(&slot->display->lock);
+	slot->lost = false;
+	pthread_mutex_unlock(&slot->display->lock);
 }
 
 void display_let_go(struct display *display)
@@ -69,13 +78,13 @@ void display_let_go(struct display *display)
 
 static void on_flip(void *data, const struct presenter_flip *flip)
 {
-	struct display *display = data;
+	struct display *display = ((struct slot *)data)->display;
 	display->params.flip(display->params.data, flip);
 }
 
 static void on_key(void *data, const struct presenter_key *key)
 {
-	struct display *display = data;
+	struct display *display = ((struct slot *)data)->display;
 	display->params.key(display->params.data, key);
 }
 
@@ -83,7 +92,7 @@ static void on_presenter_event(void *data, uint32_t events)
 {
 	struct display *display = data;
 	(void)events;
-	display->presenter->impl->process_events(display->presenter);
+	display->now->presenter->impl->process_events(display->now->presenter);
 }
 
 /* ---- making one ---- */
@@ -94,10 +103,10 @@ static bool may_share_gl(const struct settings *settings)
 	return !settings->gles && (strcmp(settings->context, "auto") == 0 || strcmp(settings->context, "egl") == 0);
 }
 
-static struct presenter *make(struct display *display, struct error *error)
+static struct presenter_params params_for(struct display *display, struct slot *slot)
 {
 	const struct settings *settings = display->params.settings;
-	const struct presenter_params params = {
+	return (struct presenter_params){
 		.clock = display->params.clock,
 		.log = display->params.log,
 		.refresh_numerator = settings->refresh_numerator,
@@ -114,26 +123,22 @@ static struct presenter *make(struct display *display, struct error *error)
 		.lost = on_lost,
 		.failed = on_failed,
 		.key = on_key,
-		.data = display,
+		.data = slot,
 		.vsync = display->params.vsync,
 	};
-	return presenter_create(settings->present, &params, error);
 }
 
-static int use_first_that_works(struct display *display, struct error *error)
+/* Of the one before nothing is heard any more. */
+static struct slot *free_slot(struct display *display)
 {
-	struct presenter *presenter = make(display, error);
-	if (!presenter)
-		return -ENODEV;
-	display->presenter = presenter;
-	display->made_ns = clock_now(display->params.clock);
-	if (presenter->impl->get_event_fd)
-		display->presenter_source = loop_add(display->params.loop, presenter->impl->get_event_fd(presenter), EPOLLIN,
-											 on_presenter_event, display);
-	display->params.change(display->params.data, presenter);
-	return 0;
+	struct slot *slot = &display->slots[display->now == &display->slots[0]];
+	pthread_mutex_lock(&display->lock);
+	*slot = (struct slot){.display = display};
+	pthread_mutex_unlock(&display->lock);
+	return slot;
 }
 
+/* The delay until those before it in the list are looked for, or all if there is none. */
 static void try_later(struct display *display)
 {
 	const uint64_t delay_ns = display->delay_ns ? display->delay_ns : 1;
@@ -150,6 +155,58 @@ static void longer_delay(struct display *display)
 		display->delay_ns = LAST_DELAY;
 }
 
+static void use(struct display *display, struct slot *slot)
+{
+	const struct presenter_impl *impl = slot->presenter->impl;
+	display->now = slot;
+	display->made_ns = clock_now(display->params.clock);
+	if (impl->get_event_fd)
+		display->presenter_source =
+			loop_add(display->params.loop, impl->get_event_fd(slot->presenter), EPOLLIN, on_presenter_event, display);
+	display->params.change(display->params.data, slot->presenter);
+	if (presenter_has_better(display->params.settings->present, impl)) {
+		longer_delay(display);
+		try_later(display);
+	}
+	/* It may be lost already. */
+	wake(display);
+}
+
+static int use_first_that_works(struct display *display, struct error *error)
+{
+	struct slot *slot = free_slot(display);
+	const struct presenter_params params = params_for(display, slot);
+	slot->presenter = presenter_create(display->params.settings->present, &params, error);
+	if (!slot->presenter)
+		return -ENODEV;
+	use(display, slot);
+	return 0;
+}
+
+static void take_away(struct display *display)
+{
+	display->taken_away = true;
+	loop_remove(&display->presenter_source);
+	display->params.change(display->params.data, NULL);
+}
+
+/* One that stands before the one in use. */
+static void look_for_better(struct display *display)
+{
+	struct slot *slot = free_slot(display);
+	const struct presenter_params params = params_for(display, slot);
+	const struct presenter_impl *impl = display->now->presenter->impl;
+	slot->presenter = presenter_create_better(display->params.settings->present, impl, &params);
+	if (slot->presenter) {
+		log_info(display->params.log, "%s works again and takes over from %s", slot->presenter->impl->name, impl->name);
+		display->next = slot;
+		take_away(display);
+		return;
+	}
+	longer_delay(display);
+	try_later(display);
+}
+
 static void on_retry(void *data, uint32_t events)
 {
 	struct display *display = data;
@@ -158,8 +215,13 @@ static void on_retry(void *data, uint32_t events)
 	(void)events;
 	if (read(display->retry_fd, &count, sizeof(count)) < 0)
 		return;
+	if (display->now) {
+		if (!display->taken_away)
+			look_for_better(display);
+		return;
+	}
 	if (use_first_that_works(display, &error) == 0) {
-		log_info(display->params.log, "%s presents now", display->presenter->impl->name);
+		log_info(display->params.log, "%s presents now", display->now->presenter->impl->name);
 		return;
 	}
 	longer_delay(display);
@@ -170,22 +232,21 @@ static void on_retry(void *data, uint32_t events)
 
 /* ---- losing one ---- */
 
-static void take_away(struct display *display, const char *sentence)
-{
-	display->taken_away = true;
-	log_warning(display->params.log, "%s is lost: %s", display->presenter->impl->name, sentence);
-	loop_remove(&display->presenter_source);
-	display->params.change(display->params.data, NULL);
-}
-
 static void bury(struct display *display)
 {
+	struct slot *next = display->next;
 	const bool good = clock_now(display->params.clock) - display->made_ns > GOOD_LIFE;
-	presenter_destroy(&display->presenter);
+	presenter_destroy(&display->now->presenter);
+	display->now = display->next = NULL;
 	display->taken_away = false;
 	pthread_mutex_lock(&display->lock);
-	display->lost = display->let_go = false;
+	display->let_go = false;
 	pthread_mutex_unlock(&display->lock);
+	if (next) {
+		use(display, next);
+		log_info(display->params.log, "%s presents now", next->presenter->impl->name);
+		return;
+	}
 	if (good)
 		display->delay_ns = 0;
 	else
@@ -196,19 +257,22 @@ static void bury(struct display *display)
 static void on_wake(void *data, uint32_t events)
 {
 	struct display *display = data;
-	char sentence[sizeof(display->sentence)];
+	char sentence[sizeof(display->slots[0].sentence)] = "";
 	uint64_t count;
 	(void)events;
 	if (read(display->wake_fd, &count, sizeof(count)) < 0)
 		return;
 	pthread_mutex_lock(&display->lock);
-	const bool lost = display->lost, let_go = display->let_go;
-	memcpy(sentence, display->sentence, sizeof(sentence));
+	const bool lost = display->now && display->now->lost, let_go = display->let_go;
+	if (lost)
+		memcpy(sentence, display->now->sentence, sizeof(sentence));
 	pthread_mutex_unlock(&display->lock);
-	if (lost && !display->taken_away && display->presenter)
-		take_away(display, sentence);
-	else if (let_go && display->taken_away)
+	if (lost && !display->taken_away) {
+		log_warning(display->params.log, "%s is lost: %s", display->now->presenter->impl->name, sentence);
+		take_away(display);
+	} else if (let_go && display->taken_away) {
 		bury(display);
+	}
 }
 
 /* ---- life ---- */
@@ -250,7 +314,8 @@ void display_destroy(struct display **display)
 	loop_remove(&self->presenter_source);
 	loop_remove(&self->wake_source);
 	loop_remove(&self->retry_source);
-	presenter_destroy(&self->presenter);
+	for (size_t i = 0; i < sizeof(self->slots) / sizeof(self->slots[0]); i++)
+		presenter_destroy(&self->slots[i].presenter);
 	if (self->wake_fd >= 0)
 		close(self->wake_fd);
 	if (self->retry_fd >= 0)
@@ -261,6 +326,7 @@ void display_destroy(struct display **display)
 
 void display_toggle_fullscreen(struct display *display)
 {
-	if (display->presenter && !display->taken_away && display->presenter->impl->toggle_fullscreen)
-		display->presenter->impl->toggle_fullscreen(display->presenter);
+	struct presenter *presenter = display->now && !display->taken_away ? display->now->presenter : NULL;
+	if (presenter && presenter->impl->toggle_fullscreen)
+		presenter->impl->toggle_fullscreen(presenter);
 }

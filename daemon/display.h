@@ -5,6 +5,8 @@
  * The display of an output over its whole life: a presenter is made of the
  * first in the list that works and given to the user; when it is lost it is
  * taken away, destroyed, and the list is tried again, with a growing delay.
+ * While a later one of the list is in use, the earlier ones are looked for now
+ * and then, and one that works again takes over.
  *
  * Lives on main, since windows demand that; what other threads may call says so.
  */

@@ -87,6 +87,37 @@ struct presenter *presenter_create(const char *list, const struct presenter_para
 	return NULL;
 }
 
+/* The next of those before `than` that can be looked for; NULL: no more. */
+static const struct presenter_impl *next_better(const char **list, const struct presenter_impl *than)
+{
+	char name[NAME_BYTES];
+	while (next_name(list, name) && strcmp(name, than->name) != 0)
+		if (is_built(name) && find(name)->is_possible)
+			return find(name);
+	*list = "";
+	return NULL;
+}
+
+bool presenter_has_better(const char *list, const struct presenter_impl *than)
+{
+	return next_better(&list, than) != NULL;
+}
+
+struct presenter *presenter_create_better(const char *list, const struct presenter_impl *than,
+										  const struct presenter_params *params)
+{
+	const struct presenter_impl *impl;
+	while ((impl = next_better(&list, than)) != NULL) {
+		struct error error;
+		struct presenter *presenter = impl->is_possible(params) ? impl->create(params, &error) : NULL;
+		if (presenter)
+			return presenter;
+		if (params->failed)
+			params->failed(params->data);
+	}
+	return NULL;
+}
+
 void presenter_destroy(struct presenter **presenter)
 {
 	if (*presenter)

@@ -208,6 +208,14 @@ int presenter_check_list(const char *list, struct error *error);
 
 /* Creates the first presenter of the list that works; why others did not is logged. NULL with the last sentence. */
 struct presenter *presenter_create(const char *list, const struct presenter_params *params, struct error *error);
+/*
+ * The first that works of those that stand before this one in the list and look possible; quietly NULL if there is
+ * none. The one that there is already goes on meanwhile.
+ */
+struct presenter *presenter_create_better(const char *list, const struct presenter_impl *than,
+										  const struct presenter_params *params);
+/* Can there ever be one? */
+bool presenter_has_better(const char *list, const struct presenter_impl *than);
 void presenter_destroy(struct presenter **presenter);
 
 extern const struct presenter_impl presenter_headless;

@@ -17,9 +17,15 @@ static struct {
 	unsigned failures; /* of the next attempts */
 	bool loses;        /* the first of the list, which then fails */
 	unsigned attempts, living;
+
+	bool can_be_better;          /* there is one before it in the list */
+	unsigned better_in;          /* it works after so many looks; 0: not */
+	struct presenter_params own; /* of the better one */
+	struct presenter better;
+	bool loses_better; /* right after it was made */
 } fake;
 
-static struct presenter_impl fake_impl = {.name = "fake"};
+static struct presenter_impl fake_impl = {.name = "fake"}, better_impl = {.name = "better"};
 
 struct presenter *presenter_create(const char *list, const struct presenter_params *params, struct error *error)
 {
@@ -39,6 +45,28 @@ struct presenter *presenter_create(const char *list, const struct presenter_para
 	fake.params = *params;
 	fake.presenter.impl = &fake_impl;
 	return &fake.presenter;
+}
+
+bool presenter_has_better(const char *list, const struct presenter_impl *than)
+{
+	CHECK_STRING(list, "fake");
+	return fake.can_be_better && than == &fake_impl;
+}
+
+struct presenter *presenter_create_better(const char *list, const struct presenter_impl *than,
+										  const struct presenter_params *params)
+{
+	CHECK(presenter_has_better(list, than));
+	CHECK_INT(fake.living, 1); /* the other one shows meanwhile */
+	fake.attempts++;
+	if (fake.better_in == 0 || --fake.better_in > 0)
+		return NULL;
+	fake.living++;
+	fake.own = *params;
+	fake.better.impl = &better_impl;
+	if (fake.loses_better)
+		params->lost(params->data, "gone again");
+	return &fake.better;
 }
 
 void presenter_destroy(struct presenter **presenter)
@@ -193,11 +221,66 @@ static void test_none_works(void)
 	fixture_finish(&fixture);
 }
 
+/* One that stands before it in the list works again: it takes over, without a moment that nobody could show in. */
+static void test_better_one(void)
+{
+	struct fixture fixture;
+	struct error error;
+	fixture_init(&fixture);
+	fake.can_be_better = true;
+	fake.better_in = 2;
+	fixture.display = create(&fixture, &error);
+	CHECK(fixture.display);
+	step_until_changes(&fixture, 2);
+	CHECK(!fixture.user.presenter);
+	CHECK_INT(fake.living, 2);
+	fake.params.lost(fake.params.data, "which nobody cares for any more");
+	step(&fixture, 100);
+	CHECK_INT(fixture.user.changes, 2);
+
+	display_let_go(fixture.display);
+	step_until_changes(&fixture, 3);
+	CHECK(fixture.user.presenter == &fake.better);
+	CHECK_INT(fake.living, 1);
+	for (int i = 0; i < 5; i++)
+		step(&fixture, 10);
+	CHECK_INT(fixture.user.changes, 3);
+
+	/* And the list from its start when that is lost. */
+	fake.own.lost(fake.own.data, "unplugged");
+	step_until_changes(&fixture, 4);
+	display_let_go(fixture.display);
+	step_until_changes(&fixture, 5);
+	CHECK(fixture.user.presenter == &fake.presenter);
+	fixture_finish(&fixture);
+}
+
+/* It was lost before it was used. */
+static void test_better_one_lost(void)
+{
+	struct fixture fixture;
+	struct error error;
+	fixture_init(&fixture);
+	fake.can_be_better = fake.loses_better = true;
+	fake.better_in = 1;
+	fixture.display = create(&fixture, &error);
+	step_until_changes(&fixture, 2);
+	display_let_go(fixture.display);
+	step_until_changes(&fixture, 4);
+	CHECK(!fixture.user.presenter);
+	display_let_go(fixture.display);
+	step_until_changes(&fixture, 5);
+	CHECK(fixture.user.presenter == &fake.presenter);
+	fixture_finish(&fixture);
+}
+
 int main(void)
 {
 	RUN(test_lost_and_found);
 	RUN(test_destroyed_while_lost);
 	RUN(test_failed_one_was_lost);
 	RUN(test_none_works);
+	RUN(test_better_one);
+	RUN(test_better_one_lost);
 	return test_result();
 }

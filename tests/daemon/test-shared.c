@@ -158,7 +158,7 @@ static void test_patch(void)
 	stop();
 }
 
-/* The engine goes on without the window's context when the server is gone. */
+/* The engine goes on without the window's context when the server is gone, and in the next one's when it is back. */
 static void test_lost_server(void)
 {
 	struct pursuit_feedback_report report;
@@ -175,6 +175,11 @@ static void test_lost_server(void)
 			shown += report.shown == PURSUIT_SHOWN;
 	}
 	CHECK(shown >= 20);
+	const json_int_t copies = count_runs("copy");
+	CHECK(xvfb_start(&xvfb));
+	window = xvfb_find(&xvfb, "Pursuit");
+	CHECK(play_until_pixel(WIDTH - 1, HEIGHT - 1, color_at(WIDTH - 1, HEIGHT - 1), true));
+	CHECK(count_runs("copy") > copies);
 	stop();
 }
 
@@ -187,7 +192,7 @@ int main(int argc, char **argv)
 	RUN(test_same_screen);
 	RUN(test_recorded);
 	RUN(test_patch);
-	RUN(test_lost_server); /* the last one: it has no server afterwards */
+	RUN(test_lost_server);
 	xvfb_stop(&xvfb);
 	fixture_finish(&fixture);
 	return test_result();

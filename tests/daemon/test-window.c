@@ -228,6 +228,36 @@ static void test_lost_server(void)
 	CHECK(fixture_logged(&fixture, "glfw is lost"));
 	CHECK(fixture_logged(&fixture, "headless presents now"));
 	CHECK(play_until_shown(20));
+}
+
+/* And comes back: so does the window, and whose pictures went nowhere sees them again. */
+static void test_server_that_comes_back(void)
+{
+	for (int i = 0; i < 3; i++) {
+		CHECK(xvfb_start(&xvfb));
+		CHECK(fixture_logged(&fixture, "glfw works again and takes over from headless"));
+		window = xvfb_find(&xvfb, "Pursuit");
+		CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
+		CHECK(play_until_shown(20));
+		xvfb_stop(&xvfb);
+		sleep_ms(500);
+	}
+	CHECK(play_until_shown(20));
+	stop(SIGTERM);
+}
+
+/* As the only presenter: none for a while. */
+static void test_server_that_is_waited_for(void)
+{
+	CHECK(xvfb_start(&xvfb));
+	start("glfw");
+	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
+	xvfb_stop(&xvfb);
+	CHECK(fixture_logged(&fixture, "no presenter works"));
+	CHECK(xvfb_start(&xvfb));
+	CHECK(fixture_logged(&fixture, "glfw presents now"));
+	window = xvfb_find(&xvfb, "Pursuit");
+	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
 	stop(SIGTERM);
 }
 
@@ -242,7 +272,9 @@ int main(int argc, char **argv)
 	RUN(test_keys);
 	RUN(test_help_without_a_game);
 	RUN(test_hidden_window);
-	RUN(test_lost_server); /* the last one: it has no server afterwards */
+	RUN(test_lost_server);
+	RUN(test_server_that_comes_back); /* goes on where that ended */
+	RUN(test_server_that_is_waited_for);
 	xvfb_stop(&xvfb);
 	fixture_finish(&fixture);
 	return test_result();

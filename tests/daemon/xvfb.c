@@ -19,7 +19,6 @@ bool xvfb_start(struct xvfb *xvfb)
 {
 	int ends[2];
 	char number[16] = "";
-	memset(xvfb, 0, sizeof(*xvfb));
 	if (pipe(ends) < 0)
 		return false;
 	fflush(NULL);
@@ -31,7 +30,12 @@ bool xvfb_start(struct xvfb *xvfb)
 		dup2(null, STDOUT_FILENO);
 		dup2(null, STDERR_FILENO);
 		prctl(PR_SET_PDEATHSIG, SIGKILL);
-		execlp("Xvfb", "Xvfb", "-displayfd", fd, "-screen", "0", "800x600x24", "-nolisten", "tcp", (char *)NULL);
+		const char *const arguments[] = {"Xvfb",       "-displayfd", fd,    "-screen", "0",
+										 "800x600x24", "-nolisten",  "tcp", NULL,      NULL};
+		const char *arguments_of[10];
+		memcpy(arguments_of, arguments, sizeof(arguments));
+		arguments_of[8] = *xvfb->name ? xvfb->name : NULL;
+		execvp("Xvfb", (char *const *)(void *)arguments_of);
 		_exit(127);
 	}
 	close(ends[1]);

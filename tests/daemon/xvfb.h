@@ -16,7 +16,7 @@ struct xvfb {
 	Display *display;
 };
 
-/* False: Xvfb is not installed or does not start. */
+/* False: Xvfb is not installed or does not start. Zeroed, or stopped: then it comes back under the name that it had. */
 bool xvfb_start(struct xvfb *xvfb);
 void xvfb_stop(struct xvfb *xvfb);
 
