@@ -9,8 +9,6 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
-#include "daemon/present/kms_hotplug.h"
-
 #define MS UINT64_C(1000000)
 /* The kernel takes a flip so long before the display's blank begins; at most a quarter of a vblank. */
 #define GUARD_NS (MS + MS / 5)
@@ -63,6 +61,7 @@ static int light_up(struct kms *kms, struct error *error)
 
 static void take_down(struct kms *kms)
 {
+	kms_cable_destroy(&kms->cable);
 	if (kms->device) {
 		/* First what was there before, so that the display does not go dark in between. */
 		kms_device_restore(kms->device);
@@ -72,8 +71,6 @@ static void take_down(struct kms *kms)
 	}
 	kms_device_destroy(&kms->device);
 	kms_console_finish(&kms->console);
-	if (kms->hotplug >= 0)
-		close(kms->hotplug);
 	if (kms->wake >= 0)
 		close(kms->wake);
 	pthread_mutex_destroy(&kms->lock);
@@ -91,6 +88,15 @@ static int start_thread(struct kms *kms)
 	return code;
 }
 
+/* On the thread that watches the cable. */
+static void on_unplugged(void *data)
+{
+	struct kms *kms = data;
+	pthread_mutex_lock(&kms->lock);
+	kms_lose(kms, "the display was unplugged");
+	pthread_mutex_unlock(&kms->lock);
+}
+
 static int start(struct kms *kms, struct error *error)
 {
 	kms->wake = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
@@ -102,10 +108,17 @@ static int start(struct kms *kms, struct error *error)
 	const int result = light_up(kms, error);
 	if (result < 0)
 		return result;
-	kms->hotplug = kms_hotplug_open();
 	kms_console_init(&kms->console, kms->params.log);
+	kms->cable = kms_cable_create(kms->device, on_unplugged, kms, error);
+	if (!kms->cable)
+		return -ENOMEM;
 	const int code = start_thread(kms);
 	return code == 0 ? 0 : error_set(error, -code, "kms: cannot start a thread: %s", strerror(code));
+}
+
+static bool kms_is_possible(const struct presenter_params *params)
+{
+	return kms_cable_is_plugged(params->options.device, params->options.connector);
 }
 
 static struct presenter *kms_create(const struct presenter_params *params, struct error *error)
@@ -118,7 +131,7 @@ static struct presenter *kms_create(const struct presenter_params *params, struc
 	}
 	kms->presenter.impl = &presenter_kms;
 	kms->params = *params;
-	kms->hotplug = kms->wake = -1;
+	kms->wake = -1;
 	kms->console = (struct kms_console){-1, -1};
 	pthread_mutex_init(&kms->lock, NULL);
 	if (start(kms, error) < 0) {
@@ -292,6 +305,7 @@ static uint64_t kms_get_lead(struct presenter *presenter)
 const struct presenter_impl presenter_kms = {
 	.name = "kms",
 	.description = "a display without any compositor: pictures scanned out by the kernel's display controller",
+	.is_possible = kms_is_possible,
 	.create = kms_create,
 	.destroy = kms_destroy,
 	.get_grid = kms_get_grid,

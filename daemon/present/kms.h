@@ -21,6 +21,7 @@
 
 #include <pthread.h>
 
+#include "daemon/present/kms_cable.h"
 #include "daemon/present/kms_console.h"
 #include "daemon/present/kms_device.h"
 #include "daemon/present/presenter.h"
@@ -40,7 +41,8 @@ struct kms {
 	struct presenter_params params;
 	struct kms_device *device;
 	struct kms_console console;
-	int hotplug, wake; /* -1: none */
+	struct kms_cable *cable;
+	int wake;          /* -1: none */
 	char display[256]; /* mode and connector */
 	uint64_t guard_ns;
 	struct kms_buffer backdrop; /* black: before the first picture */
@@ -61,7 +63,6 @@ struct kms {
 	/* the event thread's own */
 	struct presenter_flip reports[KMS_REPORTS];
 	uint32_t report_count;
-	uint64_t checked_ns;
 	bool told_loss;
 };
 

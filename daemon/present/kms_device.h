@@ -15,7 +15,7 @@
  * console again. Nothing of ours outlives the process, so nothing needs a
  * signal handler or a guardian.
  *
- * Threads: one at a time, the owner's lock; buffers can be made on any thread.
+ * Threads: one at a time, the owner's lock; buffers can be made, and the cable looked at, on any thread.
  */
 #ifndef PURSUIT_KMS_DEVICE_H
 #define PURSUIT_KMS_DEVICE_H

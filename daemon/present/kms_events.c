@@ -9,11 +9,8 @@
 #include <unistd.h>
 
 #include "daemon/present/kms.h"
-#include "daemon/present/kms_hotplug.h"
 
 #define SECOND UINT64_C(1000000000)
-/* The cable is looked at so often where the kernel sends no message. */
-#define CHECK_NS SECOND
 /* A display that says nothing for so long is dead. */
 #define SILENCE_NS (2 * SECOND)
 /* So many vblanks after its own a flip will not end any more. */
@@ -147,32 +144,33 @@ static void leave(struct kms *kms)
 	kms->away = true;
 }
 
-static void come_back(struct kms *kms)
+/* Setting a mode takes long: nobody waits for it but this thread, and as long as we are away nobody flips. */
+static int light_up_again(struct kms *kms, struct error *error)
 {
 	const struct scanout *scanout = &kms->scanout;
 	const struct kms_buffer *buffer = scanout->shown.any ? &kms->pictures[scanout->shown.image].buffer : &kms->backdrop;
+	pthread_mutex_unlock(&kms->lock);
+	int result = kms_device_return(kms->device);
+	if (result < 0)
+		error_set(error, result, "another program has taken the display");
+	else
+		result = kms_device_show(kms->device, buffer, error);
+	pthread_mutex_lock(&kms->lock);
+	return result;
+}
+
+static void come_back(struct kms *kms)
+{
 	struct error error;
 
 	if (!kms->away)
 		return;
-	if (kms_device_return(kms->device) < 0)
-		kms_lose(kms, "another program has taken the display");
-	else if (kms_device_show(kms->device, buffer, &error) < 0)
+	if (light_up_again(kms, &error) < 0)
 		kms_lose(kms, error.text);
 	kms->away = false;
 	if (kms->lost || (kms->running && kms_anchor(kms) < 0))
 		kms_lose(kms, "it counts no vblanks any more");
 	log_info(kms->params.log, "kms: back on display");
-}
-
-static void check_cable(struct kms *kms, bool told)
-{
-	const uint64_t now_ns = now_of(kms);
-	if (!told && now_ns < kms->checked_ns + CHECK_NS)
-		return;
-	kms->checked_ns = now_ns;
-	if (!kms->lost && !kms_device_is_connected(kms->device, told))
-		kms_lose(kms, "the display was unplugged");
 }
 
 /* ---- the thread ---- */
@@ -197,16 +195,16 @@ static void act_on_time(struct kms *kms)
 		kms_lose(kms, "a flip has not ended");
 }
 
-/* When there is something to do even if nobody says anything. */
+/* When there is something to do even if nobody says anything; UINT64_MAX: never. */
 static uint64_t next_time(const struct kms *kms)
 {
-	const uint64_t check_ns = kms->checked_ns + CHECK_NS, next = kms->number + 1;
-	uint64_t time_ns = grid_time(&kms->grid, next);
-	if (!kms->running || (!kms->away && !is_to_choose(kms, next)))
-		return check_ns;
-	if (!kms->away)
-		time_ns -= kms->guard_ns;
-	return time_ns < check_ns ? time_ns : check_ns;
+	const uint64_t next = kms->number + 1, time_ns = grid_time(&kms->grid, next);
+	const uint64_t silence_ns = kms->heard_ns + SILENCE_NS + 1;
+	if (!kms->running)
+		return UINT64_MAX;
+	if (kms->away)
+		return time_ns;
+	return is_to_choose(kms, next) && time_ns - kms->guard_ns < silence_ns ? time_ns - kms->guard_ns : silence_ns;
 }
 
 /* What the descriptors say; with the lock. */
@@ -218,8 +216,7 @@ static void act(struct kms *kms, const struct pollfd *fds)
 		kms_lose(kms, strerror(errno));
 	if (fds[1].revents && read(kms->wake, &count, sizeof(count)) < 0)
 		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
-	check_cable(kms, fds[2].revents && kms_hotplug_read(kms->hotplug));
-	if (fds[3].revents) {
+	if (fds[2].revents) {
 		const enum kms_console_event event = kms_console_read(&kms->console);
 		if (event == KMS_CONSOLE_LEAVE)
 			leave(kms);
@@ -265,9 +262,8 @@ static void prepare_thread(const struct kms *kms)
 void *kms_run(void *data)
 {
 	struct kms *kms = data;
-	struct pollfd fds[4] = {{kms_device_get_fd(kms->device), POLLIN, 0},
+	struct pollfd fds[3] = {{kms_device_get_fd(kms->device), POLLIN, 0},
 							{kms->wake, POLLIN, 0},
-							{kms->hotplug, POLLIN, 0},
 							{kms_console_get_fd(&kms->console), POLLIN, 0}};
 
 	prepare_thread(kms);
@@ -280,8 +276,8 @@ void *kms_run(void *data)
 			fds[0].fd = -1; /* a controller that is gone would wake us for ever */
 		pthread_mutex_unlock(&kms->lock);
 		tell(kms, lost);
-		if (ppoll(fds, 4, &timeout, NULL) < 0)
-			for (int i = 0; i < 4; i++)
+		if (ppoll(fds, 3, then_ns == UINT64_MAX ? NULL : &timeout, NULL) < 0)
+			for (int i = 0; i < 3; i++)
 				fds[i].revents = 0;
 		pthread_mutex_lock(&kms->lock);
 		if (!kms->stop)

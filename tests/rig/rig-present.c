@@ -7,8 +7,9 @@
  * vblank), tiny pictures, each queued for its vblank. What the kernel said of
  * each flip is compared with what was asked for.
  *
- *   rig-present [--flips F] [--mode WxH@R] [--on-time SHARE]
+ *   rig-present [--flips F] [--mode WxH@R] [--on-time SHARE] [--slow-probe MS]
  *
+ * With --slow-probe each look at the cable takes so long (virtual) time, as with displays that are real.
  * Without --on-time nothing may be missed, doubled, out of order or out of
  * phase. With it (real time) that share of the vblanks must show their picture.
  */
@@ -16,8 +17,11 @@
 #include <getopt.h>
 #include <inttypes.h>
 #include <pthread.h>
+#include <stdatomic.h>
+#include <time.h>
 
 #include "daemon/clock.h"
+#include "daemon/present/kms_device.h"
 #include "daemon/present/pacer.h"
 #include "daemon/present/presenter.h"
 #include "tests/test.h"
@@ -199,12 +203,29 @@ static void drive(struct bench *bench, uint64_t flips)
 	bench->presenter->impl->pause(bench->presenter);
 }
 
+/* ---- a display whose cable is looked at slowly ---- */
+
+static unsigned slow_probe_ms;
+static atomic_uint slow_probes;
+
+bool __real_kms_device_is_connected(struct kms_device *device, bool probe);
+bool __wrap_kms_device_is_connected(struct kms_device *device, bool probe);
+
+bool __wrap_kms_device_is_connected(struct kms_device *device, bool probe)
+{
+	const struct timespec while_it_answers = {slow_probe_ms / 1000, (long)(slow_probe_ms % 1000) * 1000000};
+	if (slow_probe_ms > 0 && nanosleep(&while_it_answers, NULL) == 0)
+		atomic_fetch_add(&slow_probes, 1);
+	return __real_kms_device_is_connected(device, probe);
+}
+
 /* ---- */
 
 struct arguments {
 	uint64_t flips;
 	const char *mode;
 	double on_time; /* 0: all, exactly */
+	unsigned slow_probe_ms;
 };
 
 static void print(const struct bench *bench)
@@ -250,6 +271,7 @@ static bool parse(int count, char **values, struct arguments *arguments)
 	static const struct option options[] = {{"flips", required_argument, NULL, 'f'},
 											{"mode", required_argument, NULL, 'm'},
 											{"on-time", required_argument, NULL, 'o'},
+											{"slow-probe", required_argument, NULL, 's'},
 											{0}};
 	int option;
 	*arguments = (struct arguments){.flips = 1200, .mode = "1024x768@120"};
@@ -260,6 +282,8 @@ static bool parse(int count, char **values, struct arguments *arguments)
 			arguments->mode = optarg;
 		else if (option == 'o')
 			arguments->on_time = strtod(optarg, NULL);
+		else if (option == 's')
+			arguments->slow_probe_ms = (unsigned)strtoul(optarg, NULL, 10);
 		else
 			return false;
 	}
@@ -274,6 +298,7 @@ int main(int count, char **values)
 
 	if (!parse(count, values, &arguments))
 		return 2;
+	slow_probe_ms = arguments.slow_probe_ms;
 	clock_init_real(&bench.clock);
 	log_init(&bench.log, LOG_LEVEL_INFO);
 	pthread_mutex_init(&bench.lock, NULL);
@@ -296,6 +321,7 @@ int main(int count, char **values)
 		presenter_destroy(&bench.presenter);
 		print(&bench);
 		check(&bench, &arguments);
+		CHECK(slow_probe_ms == 0 || atomic_load(&slow_probes) >= 3);
 	}
 	return test_result();
 }

@@ -212,6 +212,29 @@ def test_unplugged():
     write(CABLE, "detect")
 
 
+def test_unplugged_with_another_to_fall_back_on():
+    write(CABLE, "off")
+    daemon = Daemon("--mode", MODE, present="kms,headless")
+    check(daemon.is_ready(), "the daemon starts without a display")
+    check(find(daemon.status(), "presenter") == "headless", "headless, as nothing is plugged in")
+    client = run_client(60)
+    for _ in range(2):
+        write(CABLE, "on")
+        check(wait_for(lambda: find(daemon.status(), "presenter") == "kms"), "it goes to the display that is plugged in")
+        shown = find(daemon.status(), "real_frames")
+        check(wait_for(lambda: find(daemon.status(), "real_frames") > shown + 40), "frames are shown there")
+        check(on_display() == ("pursuitd", MODE), f"really: {on_display()}")
+        time.sleep(3)
+        write(CABLE, "off")
+        check(wait_for(lambda: find(daemon.status(), "presenter") == "headless"), "and back to headless without it")
+        shown = find(daemon.status(), "real_frames")
+        check(wait_for(lambda: find(daemon.status(), "real_frames") > shown + 40), "frames are shown there too")
+    check("kms works again and takes over from headless" in daemon.log(), "the change is said")
+    client.kill()
+    check(daemon.end() == 0, "it ends")
+    write(CABLE, "detect")
+
+
 def activate(console):
     """Switches without waiting, as the keys do."""
     tty = os.open("/dev/tty0", os.O_RDWR | os.O_NOCTTY)
