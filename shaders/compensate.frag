@@ -7,9 +7,9 @@
  */
 #include "transfer.glsl"
 #include "stretch.glsl"
+#include "low.glsl"
 
 uniform sampler2D u_picture;
-uniform sampler2D u_low;
 uniform float u_count; /* N */
 uniform float u_boost; /* k, 0 to 1 */
 
@@ -33,8 +33,7 @@ float blur_weight()
 void main()
 {
 	vec3 code = texelFetch(u_picture, ivec2(gl_FragCoord.xy), 0).rgb;
-	vec3 low = texelFetch(u_low, ivec2(gl_FragCoord.xy), 0).rgb;
-	vec3 mixed = mix(code, low, blur_weight());
+	vec3 mixed = mix(code, low_at(ivec2(gl_FragCoord.xy)), blur_weight());
 #ifdef NO_COMPENSATION
 	o_real = vec4(code, 1.0);
 	o_between = vec4(mixed, 1.0);

@@ -10,7 +10,6 @@ extern const char shader_rectangle_vert[];
 extern const char shader_grid_vert[];
 extern const char shader_tiles_vert[];
 extern const char shader_pyramid_frag[];
-extern const char shader_low_frag[];
 extern const char shader_compensate_frag[];
 extern const char shader_warp_frag[];
 extern const char shader_ui_frag[];

@@ -7,8 +7,9 @@
  */
 #ifdef TEAR
 #include "stretch.glsl"
+#define LOW_BETWEEN
+#include "low.glsl"
 
-uniform sampler2D u_low;
 uniform vec2 u_size;
 #endif
 
@@ -27,7 +28,7 @@ void main()
 	vec2 dy = dFdy(v_source) * u_size;
 	float area = max(abs(dx.x * dy.y - dx.y * dy.x), 1e-12);
 	float tear = smoothstep(TEAR_FROM, TEAR_FULL, larger_singular_value(dx, dy) / area - 1.0);
-	color = mix(color, texture(u_low, v_source).rgb, tear);
+	color = mix(color, low_between(v_source * u_size, u_size), tear);
 #endif
 	o_color = vec4(color, 1.0);
 }

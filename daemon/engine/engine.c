@@ -191,6 +191,7 @@ int engine_render(struct engine *engine, const struct engine_request *request, s
 const struct engine_report *engine_get_report(struct engine *engine)
 {
 	engine->executor->ops->collect_times(engine->executor);
+	engine->report.memory_bytes = engine->executor->bytes;
 	return &engine->report;
 }
 

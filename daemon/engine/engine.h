@@ -95,6 +95,7 @@ struct engine_params {
 	enum engine_curve curve;    /* transfer of the display */
 	float gamma;                /* 1 to 5, with ENGINE_CURVE_GAMMA */
 	bool finish_each_pass;      /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
+	bool query_software;        /* timer queries of a CPU renderer too, though they tell little; for tests */
 };
 
 enum engine_show {
@@ -153,6 +154,7 @@ struct engine_report {
 	uint32_t vertices, triangles, snapped, folded, doubtful;
 	uint64_t invalid_pixels;
 	uint64_t bytes_up, bytes_down;
+	uint64_t memory_bytes; /* that pictures and buffers take now, in GL's memory if it draws with GL; 0: not counted */
 };
 
 struct engine_info {

@@ -32,6 +32,15 @@ void tiles_finish(struct tiles *tiles)
 	*tiles = (struct tiles){0};
 }
 
+bool tiles_copy(struct tiles *to, const struct tiles *from)
+{
+	if (!tiles_begin(to, from->width, from->height, from->tile))
+		return false;
+	memcpy(to->marked, from->marked, (size_t)from->columns * from->rows);
+	to->count = from->count;
+	return true;
+}
+
 struct range {
 	uint32_t first, end;
 };

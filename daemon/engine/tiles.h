@@ -26,6 +26,8 @@ struct box {
 /* All unmarked. False if memory is out. */
 bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile);
 void tiles_finish(struct tiles *tiles);
+/* The same tiles, the same marked. False if memory is out. */
+bool tiles_copy(struct tiles *to, const struct tiles *from);
 
 /* Several threads may mark at a time. */
 void tiles_mark(struct tiles *tiles, struct box box);

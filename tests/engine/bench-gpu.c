@@ -6,10 +6,12 @@
  * and the bytes per second of passes whose least traffic is known, against copies from texture to texture measured in
  * the same run. Input comes from several frames in turn. Medians.
  *
- *   bench-gpu [--any-renderer] [--quick]
+ *   bench-gpu [--allow-software] [--quick]
  *
- * Without a GPU it says so and exits with 77. --any-renderer: then GL on the CPU, whose figures tell nothing about
- * a GPU; --quick: small and few, to see that it works.
+ * Without a GPU it says so and exits with 77. --allow-software: then GL on the CPU, by the same timer queries, with
+ * figures that tell nothing about a GPU and say so; --quick: small and few, to see that it works.
+ *
+ * analyse: motion and depth to the plan, by the CPU from its memory, and by the GPU with the way up and back.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -136,7 +138,13 @@ static void print(const struct bench *bench, const char *name, double ms, double
 	printf("\n");
 }
 
-/* What stays on the GPU. What pyramid and compensation touch depends on the picture: no bytes are claimed for them. */
+/* Pictures that a pass at least reads and writes; what the pyramid touches depends on the picture: none are claimed. */
+static double pictures_of(const char *name)
+{
+	return strcmp(name, "warp") == 0 ? 2.0 : strcmp(name, "compensate") == 0 ? 4.0 : 0.0;
+}
+
+/* What stays on the GPU. */
 static void print_passes(struct bench *bench)
 {
 	const double picture = 4.0 * bench->goal->width * bench->goal->height;
@@ -144,7 +152,7 @@ static void print_passes(struct bench *bench)
 	for (struct sample *sample = bench->samples; sample->name; sample++) {
 		const double ms = median(sample);
 		if (sample->runs > 0 && !is_transfer(sample->name) && !is_on_cpu(sample->name)) {
-			print(bench, sample->name, ms, strcmp(sample->name, "warp") == 0 ? 2.0 * picture * sample->runs : 0.0);
+			print(bench, sample->name, ms, pictures_of(sample->name) * picture * sample->runs);
 			total += ms;
 		}
 	}
@@ -169,6 +177,22 @@ static void print_others(struct bench *bench)
 	}
 }
 
+/* The analysis on the GPU instead; the rest is as before. */
+static void run_analysis(struct bench *bench)
+{
+	struct engine_params params = bench->params;
+	struct error error;
+	params.analysis = ENGINE_ANALYSIS_GPU;
+	if (engine_set_params(bench->engine, &params, &error) < 0)
+		fail(&error);
+	run(bench, NULL);
+	for (struct sample *sample = bench->samples; sample->name; sample++)
+		if (strcmp(sample->name, "analyse") == 0)
+			print(bench, "gpu-analyse", median(sample), 0.0);
+	if (engine_set_params(bench->engine, &bench->params, &error) < 0)
+		fail(&error);
+}
+
 static void run_goal(struct bench *bench, const struct goal *goal)
 {
 	uint8_t *out = malloc(4 * (size_t)goal->width * goal->height);
@@ -182,6 +206,7 @@ static void run_goal(struct bench *bench, const struct goal *goal)
 	print_passes(bench);
 	run(bench, out);
 	print_others(bench);
+	run_analysis(bench);
 	fflush(stdout);
 	for (uint32_t i = 0; i < PICTURES; i++)
 		picture_finish(&bench->pictures[i]);
@@ -189,7 +214,7 @@ static void run_goal(struct bench *bench, const struct goal *goal)
 }
 
 /* On a GPU, or on what there is. */
-static void make_engine(struct bench *bench, bool any_renderer)
+static void make_engine(struct bench *bench, bool allow_software)
 {
 	struct error error;
 	bench->engine = engine_create(&bench->params, &error);
@@ -198,14 +223,14 @@ static void make_engine(struct bench *bench, bool any_renderer)
 	const struct engine_info *info = engine_get_info(bench->engine);
 	if (!info->software)
 		return;
-	if (!any_renderer) {
+	if (!allow_software) {
 		printf("skipped: there is no GPU with EGL here, the renderer is software (%s)\n", info->renderer);
 		engine_destroy(&bench->engine);
 		exit(SKIPPED);
 	}
 	engine_destroy(&bench->engine);
 	bench->params.context = ENGINE_CONTEXT_EGL_SURFACELESS;
-	bench->params.finish_each_pass = true;
+	bench->params.query_software = true;
 	bench->engine = engine_create(&bench->params, &error);
 	if (!bench->engine) {
 		printf("skipped: there is no EGL here: %s\n", error.text);
@@ -216,19 +241,20 @@ static void make_engine(struct bench *bench, bool any_renderer)
 int main(int argc, char **argv)
 {
 	static struct bench bench;
-	bool any_renderer = false, quick = false;
+	bool allow_software = false, quick = false;
 	struct error error;
 	for (int i = 1; i < argc; i++) {
-		any_renderer |= strcmp(argv[i], "--any-renderer") == 0;
+		allow_software |= strcmp(argv[i], "--allow-software") == 0;
 		quick |= strcmp(argv[i], "--quick") == 0;
 	}
-	make_engine(&bench, any_renderer);
+	make_engine(&bench, allow_software);
 	bench.frames = quick ? 2 : FRAMES;
 	bench.copy_rate = bench_copy_rate(&bench.params, quick ? 256 : 4096, &error);
 	if (bench.copy_rate < 0.0)
 		fail(&error);
-	printf("# %s, times by %s\n", engine_get_info(bench.engine)->renderer,
-		   engine_get_report(bench.engine)->time_source);
+	const struct engine_info *info = engine_get_info(bench.engine);
+	printf("# %s, times by %s%s\n", info->renderer, engine_get_report(bench.engine)->time_source,
+		   info->software ? "; a SOFTWARE renderer: these figures tell nothing about a GPU" : "");
 	printf("gpu/copy %.1f GB/s\n", bench.copy_rate * 1e-9);
 	if (quick)
 		run_goal(&bench, &quick_goal);

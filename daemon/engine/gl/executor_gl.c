@@ -47,7 +47,7 @@ static void delete_objects(struct executor_gl *executor)
 	gl->DeleteRenderbuffers(1, &executor->depth);
 	gl->DeleteVertexArrays(1, &executor->no_attributes);
 	gl->DeleteVertexArrays(1, &executor->tile_array);
-	gl->DeleteBuffers(1, &executor->tile_vertices);
+	dynamic_finish(&executor->tile_vertices, gl);
 	warp_buffers_finish(&executor->buffers, gl);
 	stream_finish(&executor->stream, gl);
 	analysis_finish(&executor->analysis, gl);
@@ -63,7 +63,7 @@ static void destroy(struct executor **executor)
 	context_enter(gone->context, &error);
 	delete_objects(gone);
 	context_destroy(&gone->context);
-	free(gone->tile_numbers);
+	tiles_finish(&gone->shown.changed);
 	free(gone->row);
 	free(gone);
 	*executor = NULL;
@@ -96,9 +96,21 @@ static void time_end(struct executor *executor)
 	timer_end(&self(executor)->timer, table(executor));
 }
 
+static uint64_t count_bytes(const struct executor_gl *executor)
+{
+	uint64_t bytes = 4 * (uint64_t)executor->depth_width * executor->depth_height;
+	for (int i = 0; i < PICTURE_COUNT; i++)
+		bytes += target_bytes(&executor->pictures[i]);
+	for (int i = 0; i < MAX_LEVELS; i++)
+		bytes += target_bytes(&executor->levels[i]);
+	bytes += executor->buffers.vertices.bytes + executor->buffers.indices.bytes + executor->tile_vertices.bytes;
+	return bytes + stream_bytes(&executor->stream) + analysis_bytes(&executor->analysis);
+}
+
 static void collect_times(struct executor *executor)
 {
 	struct error error;
+	executor->bytes = count_bytes(self(executor));
 	if (self(executor)->timer.pending && enter(executor, &error) == 0)
 		timer_collect(&self(executor)->timer, table(executor));
 }
@@ -155,7 +167,8 @@ struct executor *executor_gl_create(const struct engine_params *params, struct e
 	executor->base.ops = &ops;
 	executor->base.info = executor->context->info;
 	executor->base.max_size = (uint32_t)executor->context->gl.max_size;
-	timer_init(&executor->timer, &executor->context->gl, executor->base.info.software, params->finish_each_pass);
+	timer_init(&executor->timer, &executor->context->gl, !executor->base.info.software || params->query_software,
+			   params->finish_each_pass);
 	set_up(executor);
 	return &executor->base;
 }

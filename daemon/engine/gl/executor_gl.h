@@ -14,6 +14,17 @@
 #include "daemon/engine/gl/warp_buffers.h"
 #include "daemon/engine/state.h"
 
+/*
+ * What the picture SHOWN holds of the last warp, so that what does not move need not be drawn again for the next
+ * in-between of the same real frame.
+ */
+struct shown {
+	bool holds;              /* anything of use */
+	enum picture_id picture; /* that was warped */
+	uint64_t begun;          /* the mesh */
+	struct tiles changed;    /* where others may have drawn over what does not move: folds, the UI */
+};
+
 struct executor_gl {
 	struct executor base;
 	struct context *context;
@@ -26,9 +37,9 @@ struct executor_gl {
 	struct analysis analysis;
 	uint8_t *row; /* of the UI */
 	size_t row_bytes;
-	GLuint tile_array, tile_vertices; /* rectangles to fill */
-	float *tile_numbers;              /* on their way there */
-	size_t tile_capacity;
+	GLuint tile_array; /* rectangles to fill */
+	struct dynamic tile_vertices;
+	struct shown shown;
 	GLuint both_framebuffer;         /* REAL and BETWEEN at once */
 	GLuint copy_framebuffer;         /* of the texture that a picture is copied to */
 	GLuint no_attributes;            /* a vertex array with nothing in it */
@@ -50,6 +61,9 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
 {
 	return &gl_of(engine)->pictures[id];
 }
+
+/* L for the program in use, which makes it of the pyramid's top level. */
+void low_bind(const struct engine *engine, const struct program *program);
 
 extern const struct pass gl_pass_analyse, gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_put,
 	gl_pass_warp, gl_pass_ui, gl_pass_read, gl_pass_copy;

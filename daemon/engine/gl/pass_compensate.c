@@ -40,8 +40,7 @@ static unsigned variant(const struct engine *engine)
 static void bind(const struct engine *engine, const struct program *program)
 {
 	const struct gl *gl = table_of(engine);
-	gl->ActiveTexture(GL_TEXTURE0 + UNIT_LOW);
-	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, PICTURE_LOW)->texture);
+	low_bind(engine, program);
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
 	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, PICTURE_ORIGINAL)->texture);
 	gl->Uniform2f(program->size, (float)engine->width, (float)engine->height);
@@ -59,9 +58,11 @@ static int run(struct engine *engine, struct error *error)
 	int result = make_targets(engine, error);
 	if (result < 0)
 		return result;
-	engine->report.bytes_up += warp_buffers_update(&executor->buffers, gl, &engine->mesh);
 	bool everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
 	if (!everywhere) {
+		result = warp_buffers_update(&executor->buffers, gl, &engine->mesh, NULL, &engine->report.bytes_up, error);
+		if (result < 0)
+			return result;
 		target_copy(picture_of(engine, PICTURE_ORIGINAL), picture_of(engine, PICTURE_REAL), gl);
 		target_copy(picture_of(engine, PICTURE_ORIGINAL), picture_of(engine, PICTURE_BETWEEN), gl);
 	}

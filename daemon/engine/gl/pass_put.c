@@ -9,6 +9,7 @@ static int run(struct engine *engine, struct error *error)
 	const struct gl *gl = table_of(engine);
 	const struct bitmap *from = &engine->pixels.shown;
 	struct target *shown = picture_of(engine, PICTURE_SHOWN);
+	gl_of(engine)->shown.holds = false;
 	int result = target_resize(shown, gl, from->width, from->height, error);
 	if (result < 0)
 		return result;

@@ -18,6 +18,7 @@ static int run(struct engine *engine, struct error *error)
 	const struct gl *gl = table_of(engine);
 	struct target *shown = picture_of(engine, PICTURE_SHOWN);
 	if (engine->job.picture != PICTURE_SHOWN) {
+		gl_of(engine)->shown.holds = false;
 		int result = target_resize(shown, gl, engine->width, engine->height, error);
 		if (result < 0)
 			return result;
@@ -37,6 +38,9 @@ static int run(struct engine *engine, struct error *error)
 	gl->DrawArrays(GL_TRIANGLES, 0, 6);
 	gl->Disable(GL_BLEND);
 	gl->Disable(GL_SCISSOR_TEST);
+	if (gl_of(engine)->shown.holds)
+		tiles_mark(&gl_of(engine)->shown.changed,
+				   (struct box){(float)bounds->left, (float)bounds->top, (float)bounds->right, (float)bounds->bottom});
 	engine->job.picture = PICTURE_SHOWN;
 	return 0;
 }

@@ -42,16 +42,14 @@ static bool use(struct engine *engine, unsigned variant, struct error *error)
 	gl->Uniform2f(program->size, (float)engine->width, (float)engine->height);
 	gl->Uniform1f(program->shift, (float)engine->job.phase);
 	gl->Uniform1f(program->last_phase, 0.0f);
+	if (variant & VARIANT_TEAR)
+		low_bind(engine, program);
 	return true;
 }
 
-static void bind_textures(const struct engine *engine)
+static void bind_picture(const struct engine *engine)
 {
 	const struct gl *gl = table_of(engine);
-	if (engine->levels_made != LEVELS_NONE) {
-		gl->ActiveTexture(GL_TEXTURE0 + UNIT_LOW);
-		gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, PICTURE_LOW)->texture);
-	}
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
 	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, engine->job.picture)->texture);
 }
@@ -84,28 +82,52 @@ static int draw(struct engine *engine, struct error *error)
 	const struct gl *gl = table_of(engine);
 	const struct warp_mesh *mesh = &engine->mesh;
 	target_draw_to(picture_of(engine, PICTURE_SHOWN), gl);
-	if (mesh->plain.count && !use(engine, 0, error))
+	if (executor->buffers.plain.count && !use(engine, 0, error))
 		return -EIO;
-	warp_buffers_draw(&executor->buffers, gl, mesh->plain);
+	warp_buffers_draw(&executor->buffers, gl, executor->buffers.plain);
 	if (mesh->torn.count && !use(engine, VARIANT_TEAR, error))
 		return -EIO;
 	warp_buffers_draw(&executor->buffers, gl, mesh->torn);
 	return mesh->folded.count || mesh->folded_torn.count ? draw_folded(engine, error) : 0;
 }
 
+/* Where SHOWN may not hold what does not move; NULL: it may not hold it anywhere. */
+static const struct tiles *changed(const struct engine *engine)
+{
+	const struct shown *shown = &gl_of(engine)->shown;
+	bool same = shown->holds && shown->begun == engine->mesh.begun && shown->picture == engine->job.picture;
+	return same ? &shown->changed : NULL;
+}
+
+/* Without memory for the tiles all is drawn anew the next time. */
+static void note_shown(struct engine *engine)
+{
+	struct shown *shown = &gl_of(engine)->shown;
+	const struct warp_mesh *mesh = &engine->mesh;
+	shown->picture = engine->job.picture;
+	shown->begun = mesh->begun;
+	shown->holds = tiles_copy(&shown->changed, &mesh->folds);
+}
+
 static int run(struct engine *engine, struct error *error)
 {
+	struct executor_gl *executor = gl_of(engine);
 	const struct gl *gl = table_of(engine);
+	const struct tiles *kept = changed(engine);
+	executor->shown.holds = false;
 	int result = target_resize(picture_of(engine, PICTURE_SHOWN), gl, engine->width, engine->height, error);
 	if (result == 0 && engine->mesh.folds.count)
 		result = make_depth(engine, error);
+	if (result == 0)
+		result = warp_buffers_update(&executor->buffers, gl, &engine->mesh, kept, &engine->report.bytes_up, error);
 	if (result < 0)
 		return result;
-	engine->report.bytes_up += warp_buffers_update(&gl_of(engine)->buffers, gl, &engine->mesh);
-	bind_textures(engine);
+	bind_picture(engine);
 	gl->Enable(GL_CULL_FACE);
 	result = draw(engine, error);
 	gl->Disable(GL_CULL_FACE);
+	if (result == 0)
+		note_shown(engine);
 	return result;
 }
 

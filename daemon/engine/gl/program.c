@@ -13,7 +13,6 @@ static const struct {
 	const char *name, *vertex, *fragment, *compute; /* the last alone, or the two others */
 } sources[PROGRAM_KIND_COUNT] = {
 	[PROGRAM_PYRAMID] = {"pyramid", shader_tiles_vert, shader_pyramid_frag},
-	[PROGRAM_LOW] = {"low", shader_tiles_vert, shader_low_frag},
 	[PROGRAM_COMPENSATE] = {"compensate", shader_grid_vert, shader_compensate_frag},
 	[PROGRAM_WARP] = {"warp", shader_grid_vert, shader_warp_frag},
 	[PROGRAM_UI] = {"ui", shader_rectangle_vert, shader_ui_frag},

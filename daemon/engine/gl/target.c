@@ -53,6 +53,11 @@ void target_finish(struct target *target, const struct gl *gl)
 	*target = (struct target){0};
 }
 
+uint64_t target_bytes(const struct target *target)
+{
+	return 4 * (uint64_t)target->width * target->height;
+}
+
 void target_draw_to(const struct target *target, const struct gl *gl)
 {
 	gl->BindFramebuffer(GL_FRAMEBUFFER, target->framebuffer);

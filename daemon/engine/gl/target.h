@@ -19,6 +19,8 @@ struct target {
 int target_resize(struct target *target, const struct gl *gl, uint32_t width, uint32_t height, struct error *error);
 void target_finish(struct target *target, const struct gl *gl);
 
+uint64_t target_bytes(const struct target *target);
+
 /* From now on draws go to the target, all of it. */
 void target_draw_to(const struct target *target, const struct gl *gl);
 

@@ -5,9 +5,12 @@
 
 #include "daemon/engine/now.h"
 
-void timer_init(struct timer *timer, const struct gl *gl, bool software, bool finish)
+/* EXT_disjoint_timer_query, which the headers of core GL lack. */
+#define GL_GPU_DISJOINT_EXT 0x8FBB
+
+void timer_init(struct timer *timer, const struct gl *gl, bool queries, bool finish)
 {
-	*timer = (struct timer){.finish = finish, .queries = gl->timer_queries && !software && !finish};
+	*timer = (struct timer){.finish = finish, .queries = gl->timer_queries && queries && !finish};
 	if (timer->queries)
 		gl->GenQueries(TIMER_QUERIES, timer->ids);
 }
@@ -51,13 +54,23 @@ void timer_end(struct timer *timer, const struct gl *gl)
 	timer->open->ms += (double)(now_ns() - timer->began_ns) * 1e-6;
 }
 
+/* GLES only: since the last question the GPU's clock changed its pace or stood still. Core GL does not tell. */
+static bool lost_count(const struct gl *gl)
+{
+	GLint disjoint = 0;
+	if (gl->gles)
+		gl->GetIntegerv(GL_GPU_DISJOINT_EXT, &disjoint);
+	return disjoint != 0;
+}
+
 void timer_collect(struct timer *timer, const struct gl *gl)
 {
-	for (uint32_t i = 0; i < timer->pending; i++) {
-		GLuint64 ns = 0;
-		gl->GetQueryObjectui64v(timer->ids[i], GL_QUERY_RESULT, &ns);
-		timer->owners[i]->ms += (double)ns * 1e-6;
-	}
+	GLuint64 ns[TIMER_QUERIES] = {0};
+	for (uint32_t i = 0; i < timer->pending; i++)
+		gl->GetQueryObjectui64v(timer->ids[i], GL_QUERY_RESULT, &ns[i]);
+	const bool lost = timer->pending && lost_count(gl);
+	for (uint32_t i = 0; i < timer->pending && !lost; i++)
+		timer->owners[i]->ms += (double)ns[i] * 1e-6;
 	timer->pending = 0;
 }
 

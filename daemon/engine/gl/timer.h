@@ -26,7 +26,8 @@ struct timer {
 	uint64_t began_ns;
 };
 
-void timer_init(struct timer *timer, const struct gl *gl, bool software, bool finish);
+/* `queries`: if the renderer has them. `finish`: wait after each pass instead. */
+void timer_init(struct timer *timer, const struct gl *gl, bool queries, bool finish);
 void timer_finish(struct timer *timer, const struct gl *gl);
 
 /* Static: "timer-query", "finish", "cpu". */
@@ -36,7 +37,7 @@ const char *timer_source(const struct timer *timer);
 void timer_begin(struct timer *timer, const struct gl *gl, struct engine_pass_report *pass, bool on_cpu);
 void timer_end(struct timer *timer, const struct gl *gl);
 
-/* Waits for queries under way and adds them to their passes. */
+/* Waits for queries under way and adds them to their passes; not if the GPU says that it lost count of time. */
 void timer_collect(struct timer *timer, const struct gl *gl);
 /* Forgets queries under way. */
 void timer_drop(struct timer *timer);

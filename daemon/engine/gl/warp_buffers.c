@@ -3,19 +3,23 @@
 
 #include "daemon/engine/gl/warp_buffers.h"
 
+#include <errno.h>
+#include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 #include "shaders/limits.h"
 
-static void make(struct warp_buffers *buffers, const struct gl *gl)
+/* Vertex arrays remember the buffers that are bound to them, whatever memory these have. */
+static void make_array(struct warp_buffers *buffers, const struct gl *gl)
 {
+	const GLsizei stride = sizeof(struct plan_vertex);
 	gl->GenVertexArrays(1, &buffers->array);
-	gl->GenBuffers(1, &buffers->vertices);
-	gl->GenBuffers(1, &buffers->indices);
+	gl->GenBuffers(1, &buffers->vertices.id);
+	gl->GenBuffers(1, &buffers->indices.id);
 	gl->BindVertexArray(buffers->array);
-	gl->BindBuffer(GL_ARRAY_BUFFER, buffers->vertices);
-	gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers->indices);
-	GLsizei stride = sizeof(struct plan_vertex);
+	gl->BindBuffer(GL_ARRAY_BUFFER, buffers->vertices.id);
+	gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers->indices.id);
 	gl->VertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, stride,
 							(const void *)offsetof(struct plan_vertex, x));
 	gl->VertexAttribPointer(ATTRIBUTE_DISPLACEMENT, 2, GL_FLOAT, GL_FALSE, stride,
@@ -27,41 +31,93 @@ static void make(struct warp_buffers *buffers, const struct gl *gl)
 	gl->EnableVertexAttribArray(ATTRIBUTE_DEPTH);
 }
 
-static uint64_t send_vertices(struct warp_buffers *buffers, const struct gl *gl, const struct plan *plan)
+static int send_vertices(struct warp_buffers *buffers, const struct gl *gl, const struct plan *plan, uint64_t *sent,
+						 struct error *error)
 {
-	GLsizeiptr size = (GLsizeiptr)((size_t)plan->columns * plan->rows * sizeof(*plan->vertices));
-	gl->BindBuffer(GL_ARRAY_BUFFER, buffers->vertices);
-	gl->BufferData(GL_ARRAY_BUFFER, size, plan->vertices, GL_STREAM_DRAW);
-	return (uint64_t)size;
+	const size_t bytes = (size_t)plan->columns * plan->rows * sizeof(*plan->vertices);
+	void *to = dynamic_map(&buffers->vertices, gl, GL_ARRAY_BUFFER, bytes, error);
+	if (!to)
+		return -ENOMEM;
+	memcpy(to, plan->vertices, bytes);
+	*sent += bytes;
+	return dynamic_unmap(gl, GL_ARRAY_BUFFER, error);
 }
 
-static uint64_t send_lists(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh)
+static bool is_still(const struct plan_vertex *vertex)
 {
-	GLsizeiptr size = (GLsizeiptr)((size_t)mesh->list_count * sizeof(*mesh->lists));
+	return vertex->ux == 0.0f && vertex->uy == 0.0f;
+}
+
+static bool stays(const struct plan *plan, const uint32_t *index, const struct tiles *kept)
+{
+	struct box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+	for (int i = 0; i < 3; i++) {
+		const struct plan_vertex *vertex = &plan->vertices[index[i]];
+		if (!is_still(vertex))
+			return false;
+		box.left = fminf(box.left, vertex->x);
+		box.right = fmaxf(box.right, vertex->x);
+		box.top = fminf(box.top, vertex->y);
+		box.bottom = fmaxf(box.bottom, vertex->y);
+	}
+	return !tiles_touch(kept, box);
+}
+
+/* The triangles of mesh->plain that have to be drawn; how many indices. */
+static uint32_t put_moving(const struct warp_mesh *mesh, const struct tiles *kept, uint32_t *to)
+{
+	const uint32_t *from = mesh->lists + mesh->plain.first;
+	uint32_t count = 0;
+	for (uint32_t i = 0; i < mesh->plain.count; i += 3)
+		if (!stays(mesh->plan, from + i, kept)) {
+			memcpy(to + count, from + i, 3 * sizeof(*to));
+			count += 3;
+		}
+	return count;
+}
+
+static int send_lists(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh,
+					  const struct tiles *kept, uint64_t *sent, struct error *error)
+{
+	const size_t bytes = (size_t)mesh->list_count * sizeof(*mesh->lists);
 	gl->BindVertexArray(buffers->array);
-	gl->BufferData(GL_ELEMENT_ARRAY_BUFFER, size, mesh->lists, GL_STREAM_DRAW);
-	return (uint64_t)size;
+	uint32_t *to = bytes ? dynamic_map(&buffers->indices, gl, GL_ELEMENT_ARRAY_BUFFER, bytes, error) : NULL;
+	buffers->plain = mesh->plain;
+	buffers->split = kept != NULL;
+	if (!to)
+		return bytes ? -ENOMEM : 0;
+	if (kept) {
+		const uint32_t first = mesh->plain.first, end = first + mesh->plain.count;
+		memcpy(to, mesh->lists, first * sizeof(*to));
+		buffers->plain.count = put_moving(mesh, kept, to + first);
+		memcpy(to + end, mesh->lists + end, (mesh->list_count - end) * sizeof(*to));
+	} else {
+		memcpy(to, mesh->lists, bytes);
+	}
+	*sent += bytes;
+	return dynamic_unmap(gl, GL_ELEMENT_ARRAY_BUFFER, error);
 }
 
-uint64_t warp_buffers_update(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh)
+int warp_buffers_update(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh,
+						const struct tiles *kept, uint64_t *sent, struct error *error)
 {
-	uint64_t sent = 0;
+	int result = 0;
 	if (!buffers->array)
-		make(buffers, gl);
+		make_array(buffers, gl);
 	if (buffers->begun != mesh->begun)
-		sent += send_vertices(buffers, gl, mesh->plan);
-	if (buffers->sorted != mesh->sorted)
-		sent += send_lists(buffers, gl, mesh);
-	buffers->begun = mesh->begun;
-	buffers->sorted = mesh->sorted;
-	return sent;
+		result = send_vertices(buffers, gl, mesh->plan, sent, error);
+	if (result == 0 && (buffers->sorted != mesh->sorted || buffers->split || kept))
+		result = send_lists(buffers, gl, mesh, kept, sent, error);
+	buffers->begun = result == 0 ? mesh->begun : 0;
+	buffers->sorted = result == 0 ? mesh->sorted : 0;
+	return result;
 }
 
 void warp_buffers_finish(struct warp_buffers *buffers, const struct gl *gl)
 {
 	gl->DeleteVertexArrays(1, &buffers->array);
-	gl->DeleteBuffers(1, &buffers->vertices);
-	gl->DeleteBuffers(1, &buffers->indices);
+	dynamic_finish(&buffers->vertices, gl);
+	dynamic_finish(&buffers->indices, gl);
 	*buffers = (struct warp_buffers){0};
 }
 

@@ -1,20 +1,28 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* The warp mesh in GL buffers, which are orphaned and refilled when it has changed. */
+/* The warp mesh in GL buffers, refilled when it has changed. */
 #ifndef PURSUIT_ENGINE_GL_WARP_BUFFERS_H
 #define PURSUIT_ENGINE_GL_WARP_BUFFERS_H
 
-#include "daemon/engine/gl/gl.h"
+#include "daemon/engine/gl/dynamic.h"
 #include "daemon/engine/warp_mesh.h"
 
 struct warp_buffers {
-	GLuint array, vertices, indices;
+	GLuint array;
+	struct dynamic vertices, indices;
 	uint64_t begun, sorted; /* what they hold, as the mesh counts */
+	struct warp_list plain; /* of mesh->plain what is to be drawn */
+	bool split;             /* that is not all of it */
 };
 
-/* Makes them hold the mesh; returns how many bytes were sent. */
-uint64_t warp_buffers_update(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh);
+/*
+ * Makes them hold the mesh; adds to *sent how many bytes that took. `kept`: NULL, or where the target may hold
+ * something else than it did when it was drawn with the same vertices: triangles of mesh->plain that do not move need
+ * not be drawn outside of it. 0, or a negative errno with a sentence.
+ */
+int warp_buffers_update(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh,
+						const struct tiles *kept, uint64_t *sent, struct error *error);
 void warp_buffers_finish(struct warp_buffers *buffers, const struct gl *gl);
 
 /* Draws a list of the mesh that the buffers hold. */

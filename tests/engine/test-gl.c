@@ -1,0 +1,372 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * What the executor that draws with GL asks of the renderer: nothing is made, compiled or waited for once it runs, how
+ * much memory it takes, that what does not move is not drawn twice, and that timer queries tell times. The argument is
+ * the context: surfaceless, gles, osmesa.
+ */
+#include "tests/test.h"
+
+#include <unistd.h>
+
+#include "daemon/engine/gl/executor_gl.h"
+#include "daemon/engine/now.h"
+#include "tests/engine/picture.h"
+
+static struct engine_params params;
+
+/* ---- calls counted ---- */
+
+static struct gl real;
+static struct {
+	uint64_t made, compiled, waited, drawn; /* drawn: indices */
+} calls;
+
+static void count_tex_image(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height, GLint border,
+							GLenum format, GLenum type, const void *pixels)
+{
+	calls.made++;
+	real.TexImage2D(target, level, internal, width, height, border, format, type, pixels);
+}
+
+static void count_buffer_data(GLenum target, GLsizeiptr size, const void *data, GLenum usage)
+{
+	calls.made++;
+	real.BufferData(target, size, data, usage);
+}
+
+static void count_renderbuffer(GLenum target, GLenum format, GLsizei width, GLsizei height)
+{
+	calls.made++;
+	real.RenderbufferStorage(target, format, width, height);
+}
+
+static void count_textures(GLsizei count, GLuint *names)
+{
+	calls.made++;
+	real.GenTextures(count, names);
+}
+
+static void count_buffers(GLsizei count, GLuint *names)
+{
+	calls.made++;
+	real.GenBuffers(count, names);
+}
+
+static void count_framebuffers(GLsizei count, GLuint *names)
+{
+	calls.made++;
+	real.GenFramebuffers(count, names);
+}
+
+static void count_compile(GLuint shader)
+{
+	calls.compiled++;
+	real.CompileShader(shader);
+}
+
+static void count_link(GLuint program)
+{
+	calls.compiled++;
+	real.LinkProgram(program);
+}
+
+static void count_finish(void)
+{
+	calls.waited++;
+	real.Finish();
+}
+
+static GLenum count_error(void)
+{
+	calls.waited++;
+	return real.GetError();
+}
+
+static void count_elements(GLenum mode, GLsizei count, GLenum type, const void *indices)
+{
+	calls.drawn += (uint64_t)count;
+	real.DrawElements(mode, count, type, indices);
+}
+
+static void count_calls(struct engine *engine)
+{
+	struct gl *gl = &gl_of(engine)->context->gl;
+	real = *gl;
+	gl->TexImage2D = count_tex_image;
+	gl->BufferData = count_buffer_data;
+	gl->RenderbufferStorage = count_renderbuffer;
+	gl->GenTextures = count_textures;
+	gl->GenBuffers = count_buffers;
+	gl->GenFramebuffers = count_framebuffers;
+	gl->CompileShader = count_compile;
+	gl->LinkProgram = count_link;
+	gl->Finish = count_finish;
+	gl->GetError = count_error;
+	gl->DrawElements = count_elements;
+	memset(&calls, 0, sizeof(calls));
+}
+
+/* ---- frames ---- */
+
+static struct engine *make(const struct engine_params *wanted)
+{
+	struct error error;
+	struct engine *engine = engine_create(wanted, &error);
+	CHECK(engine != NULL);
+	if (!engine)
+		fprintf(stderr, "%s\n", error.text);
+	return engine;
+}
+
+static void begin(struct engine *engine, const struct picture *picture, uint32_t n)
+{
+	struct error error = {""};
+	const struct engine_begin_params how = {.n = n, .last_phase = -1.0};
+	CHECK_INT(engine_begin(engine, &picture->frame, &how, &error), 0);
+}
+
+static void show(struct engine *engine, const struct picture *picture, enum engine_show what, double phase,
+				 uint8_t *out)
+{
+	struct error error = {""};
+	struct engine_image image = {.data = out, .stride = 4 * (size_t)picture->width};
+	const struct engine_request request = {what, phase};
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+}
+
+static void show_all(struct engine *engine, const struct picture *picture, uint8_t *out)
+{
+	begin(engine, picture, 3);
+	show(engine, picture, ENGINE_SHOW_REAL, 0.0, out);
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 1.0 / 3, out);
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 2.0 / 3, out);
+}
+
+/* Everything that a frame can need: folds, tears, a blur, the boost, a UI over part of it. */
+static void draw(struct picture *picture, uint32_t width, uint32_t height, double t)
+{
+	picture_init(picture, width, height, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
+	picture_draw_layers(picture, t);
+	for (uint32_t y = 10; y < 30 && y < height; y++)
+		memset(picture_row(picture, PURSUIT_ROLE_UI, y), 0x40 + (int)y, 4 * (size_t)width / 2);
+}
+
+#define PICTURES 4
+
+static void check_steady(const char *method, enum engine_analysis analysis)
+{
+	struct engine_params own = params;
+	struct picture pictures[PICTURES];
+	uint8_t *out = malloc((size_t)4 * 400 * 300);
+	own.method = method;
+	own.analysis = analysis;
+	struct engine *engine = make(&own);
+	for (int i = 0; i < PICTURES; i++)
+		draw(&pictures[i], 400, 300, 0.7 * i);
+	for (int i = 0; i < 2 * PICTURES && engine; i++)
+		show_all(engine, &pictures[i % PICTURES], out);
+	count_calls(engine);
+	for (int i = 0; i < 3 * PICTURES; i++)
+		show_all(engine, &pictures[i % PICTURES], out);
+	engine_get_report(engine);
+	CHECK_INT(calls.made, 0);
+	CHECK_INT(calls.compiled, 0);
+	CHECK_INT(calls.waited, 0);
+	CHECK(calls.drawn > 0 || strcmp(method, "blur-hold") == 0);
+	for (int i = 0; i < PICTURES; i++)
+		picture_finish(&pictures[i]);
+	engine_destroy(&engine);
+	free(out);
+}
+
+static void test_steady_state(void)
+{
+	check_steady("pursuit", ENGINE_ANALYSIS_CPU);
+	check_steady("pursuit", ENGINE_ANALYSIS_GPU);
+	check_steady("adaptive-grid", ENGINE_ANALYSIS_CPU);
+	check_steady("blur-hold", ENGINE_ANALYSIS_CPU);
+}
+
+/* The counters see what they are there for: a picture of another size needs other textures. */
+static void test_counters_count(void)
+{
+	struct engine *engine = make(&params);
+	struct picture picture;
+	uint8_t *out = malloc((size_t)4 * 400 * 300);
+	count_calls(engine);
+	draw(&picture, 400, 300, 0.0);
+	show_all(engine, &picture, out);
+	CHECK(calls.made > 5);
+	CHECK(calls.drawn > 0);
+	picture_finish(&picture);
+	engine_destroy(&engine);
+	free(out);
+}
+
+/* ---- memory ---- */
+
+#define MB UINT64_C(1000000)
+
+static void test_memory(void)
+{
+	struct engine *engine = make(&params);
+	struct picture picture;
+	uint8_t *out = malloc((size_t)4 * 1920 * 1080);
+	draw(&picture, 1920, 1080, 0.0);
+	for (int i = 0; i < 2; i++)
+		show_all(engine, &picture, out);
+	show(engine, &picture, ENGINE_SHOW_REAL, 0.3, out);
+	show(engine, &picture, ENGINE_SHOW_IN_BETWEEN, 2.0, out);
+	const uint64_t bytes = engine_get_report(engine)->memory_bytes;
+	printf("%.1f MB at 1920x1080\n", (double)bytes * 1e-6);
+	CHECK(bytes > 5 * 4 * UINT64_C(1920) * 1080);
+	CHECK(bytes <= 60 * MB);
+	show_all(engine, &picture, out);
+	CHECK_INT(engine_get_report(engine)->memory_bytes, bytes);
+	picture_finish(&picture);
+	engine_destroy(&engine);
+	free(out);
+}
+
+/* ---- what does not move ---- */
+
+/* Indices drawn for the second in-between; its picture into `out`. */
+static uint64_t draw_second(struct engine *engine, const struct picture *picture, uint8_t *out)
+{
+	begin(engine, picture, 3);
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 1.0 / 3, out);
+	const uint64_t before = calls.drawn;
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 2.0 / 3, out);
+	return calls.drawn - before;
+}
+
+static void forget(struct engine *engine)
+{
+	gl_of(engine)->shown.holds = false;
+}
+
+static void check_not_twice(struct engine *engine, const struct picture *picture)
+{
+	const size_t bytes = 4 * (size_t)picture->width * picture->height;
+	uint8_t *kept = malloc(bytes), *anew = malloc(bytes);
+	const uint64_t few = draw_second(engine, picture, kept);
+	begin(engine, picture, 3);
+	forget(engine);
+	const uint64_t before = calls.drawn;
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 2.0 / 3, anew);
+	const uint64_t all = calls.drawn - before;
+	CHECK(memcmp(kept, anew, bytes) == 0);
+	CHECK(few < all / 2);
+	/* There and back, also with the real frame between them. */
+	show(engine, picture, ENGINE_SHOW_REAL, 0.4, kept);
+	show(engine, picture, ENGINE_SHOW_REAL, 0.0, kept);
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 0.9, kept);
+	show(engine, picture, ENGINE_SHOW_PLAIN, 0.0, kept);
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 2.0 / 3, kept);
+	CHECK(memcmp(kept, anew, bytes) == 0);
+	free(kept);
+	free(anew);
+}
+
+static void test_still_is_not_drawn_twice(void)
+{
+	struct engine *engine = make(&params);
+	count_calls(engine);
+	for (int i = 0; i < 3; i++) {
+		struct picture picture;
+		picture_init(&picture, 640, 360, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | (i ? PICTURE_UI : 0u));
+		picture_draw_discs(&picture, 0.4 * i);
+		for (uint32_t y = 40; y < 60 && i; y++)
+			memset(picture_row(&picture, PURSUIT_ROLE_UI, y) + 400, 0x70, 600);
+		check_not_twice(engine, &picture);
+		picture_finish(&picture);
+	}
+	engine_destroy(&engine);
+}
+
+/* ---- times ---- */
+
+static bool is_on_cpu(const char *name)
+{
+	return strcmp(name, "analyse") == 0 || strcmp(name, "field") == 0 || strcmp(name, "paint") == 0;
+}
+
+/*
+ * Each pass that ran took some time, and all together no more than passed; of a CPU renderer's threads each may be in
+ * another pass.
+ */
+static void check_times(const struct engine *engine, const struct engine_report *report, double wall_ms)
+{
+	const double threads = engine_get_info(engine)->software ? (double)sysconf(_SC_NPROCESSORS_ONLN) : 1.0;
+	double sum = 0.0;
+	uint32_t ran = 0;
+	CHECK_STRING(report->time_source, "timer-query");
+	for (uint32_t i = 0; i < report->pass_count; i++) {
+		const struct engine_pass_report *pass = &report->passes[i];
+		CHECK(pass->ms >= 0.0 && (pass->runs > 0 || pass->ms == 0.0));
+		if (pass->runs > 0 && !is_on_cpu(pass->name)) {
+			sum += pass->ms;
+			ran++;
+		}
+	}
+	CHECK(ran >= 4);
+	CHECK(sum > 0.0);
+	CHECK(sum <= wall_ms * threads);
+	printf("%u passes of the renderer, %.3f of %.3f ms\n", ran, sum, wall_ms);
+}
+
+static void test_timer_queries(void)
+{
+	struct engine_params own = params;
+	struct picture picture;
+	uint8_t *out = malloc((size_t)4 * 640 * 360);
+	own.query_software = true;
+	struct engine *engine = make(&own);
+	if (!gl_of(engine)->timer.queries) {
+		printf("no timer queries here\n");
+		CHECK(!real.timer_queries);
+		engine_destroy(&engine);
+		free(out);
+		return;
+	}
+	draw(&picture, 640, 360, 0.0);
+	for (int i = 0; i < 3; i++) {
+		const uint64_t began = now_ns();
+		show_all(engine, &picture, out);
+		const struct engine_report *report = engine_get_report(engine);
+		check_times(engine, report, (double)(now_ns() - began) * 1e-6);
+		CHECK_INT(gl_of(engine)->timer.pending, 0);
+	}
+	/* What nobody asks for is forgotten, not counted for the next frame; and more than there are queries is no harm. */
+	for (int i = 0; i < 3; i++)
+		show_all(engine, &picture, out);
+	begin(engine, &picture, 3);
+	for (int i = 0; i < 2 * TIMER_QUERIES; i++)
+		show(engine, &picture, ENGINE_SHOW_PLAIN, 0.0, out);
+	CHECK(gl_of(engine)->timer.pending <= TIMER_QUERIES);
+	CHECK(engine_get_report(engine)->pass_count > 0);
+	picture_finish(&picture);
+	engine_destroy(&engine);
+	free(out);
+}
+
+int main(int argc, char **argv)
+{
+	const char *kind = argc > 1 ? argv[1] : "surfaceless";
+	struct error error;
+	params.context = strcmp(kind, "osmesa") == 0 ? ENGINE_CONTEXT_OSMESA : ENGINE_CONTEXT_EGL_SURFACELESS;
+	params.gles = strcmp(kind, "gles") == 0;
+	struct engine *engine = engine_create(&params, &error);
+	if (!engine)
+		SKIP(error.text);
+	real = *table_of(engine);
+	engine_destroy(&engine);
+	RUN(test_counters_count);
+	RUN(test_steady_state);
+	RUN(test_memory);
+	RUN(test_still_is_not_drawn_twice);
+	RUN(test_timer_queries);
+	return test_result();
+}
