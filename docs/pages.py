@@ -2,11 +2,14 @@
 """Makes what is read beside the programs out of what they say about themselves, so that no option is listed twice.
 
 usage: pages.py man TEMPLATE.scd PURSUIT PURSUITD     an scdoc page: @VERBS@ and @OPTIONS@ in the template are filled
+       pages.py roff SCDOC PAGE.scd                   what scdoc makes of it, without what mandoc -Tlint complains of
+       pages.py verb TEMPLATE.scd VERB PURSUIT PURSUITD   the page of a verb
        pages.py bash|zsh|fish PURSUIT PURSUITD        a completion script
 """
 import re
 import subprocess
 import sys
+import textwrap
 
 
 def ask(program, *arguments):
@@ -17,10 +20,11 @@ def ask(program, *arguments):
 class Command:
     """A verb of pursuit, or pursuitd: `options` are (name, value, choices, help, range, default)."""
 
-    def __init__(self, name, help_text, lines):
-        self.name, self.help = name, help_text
+    def __init__(self, name, help_text, related, lines):
+        self.name, self.help, self.related = name, help_text, related
         self.options = [line[1:7] for line in lines if line[0] == "option"]
-        self.texts = {kind: [line[1] for line in lines if line[0] == kind] for kind in ("usage", "summary", "example")}
+        self.texts = {kind: [line[1] for line in lines if line[0] == kind]
+                      for kind in ("usage", "summary", "status", "example")}
 
     def names(self):
         """Every way to write an option, with its choices and help: a flag that can be taken back has two."""
@@ -31,9 +35,13 @@ class Command:
                 yield "--no-" + bare, "", [], text
 
 
+def verbs_of(pursuit, only=None):
+    return [Command(name, text, related.split(), ask(pursuit, name, "--print-options"))
+            for name, text, related in ask(pursuit, "--print-verbs") if only in (None, name)]
+
+
 def commands(pursuit, pursuitd):
-    verbs = [Command(name, text, ask(pursuit, name, "--print-options")) for name, text in ask(pursuit, "--print-verbs")]
-    return verbs, Command("pursuitd", "the daemon", ask(pursuitd, "--print-options"))
+    return verbs_of(pursuit), Command("pursuitd", "the daemon", [], ask(pursuitd, "--print-options"))
 
 
 # ---- man pages ----
@@ -47,27 +55,77 @@ def man_option(option):
     name, value, choices, text, values, default = option
     lines = [f"*--{escape(name)}*" + (f" _{escape(value)}_" if value else "")]
     detail = [part for part in (values or choices.replace(",", ", "), f"default {default}" if default else "") if part]
-    text = text[0].upper() + text[1:] if text else ""
+    text = text[0].upper() + text[1:] if re.match(r"[a-z]+(?: |$)", text) else text
     text += "" if text.endswith(".") else "."
     lines.append("\t" + escape(text) + (f" ({escape('; '.join(detail))})" if detail else ""))
     return "\n".join(lines) + "\n"
 
 
-def man_verb(verb):
-    parts = [f"## pursuit {escape(verb.name)} {escape(' '.join(verb.texts['usage']))}", "",
-             escape(" ".join(verb.texts["summary"])), ""]
-    parts += [man_option(option) for option in verb.options]
-    if verb.texts["example"]:
-        parts += ["Examples:", "", "```", *verb.texts["example"], "```", ""]
-    return "\n".join(parts)
+SOCKET = """*PURSUIT_SOCKET*
+	Path of the daemon's socket. Else _$XDG_RUNTIME_DIR/pursuit/socket_, else _/run/pursuit/socket_.
+"""
+NO_COLOR = """*NO_COLOR*
+	Where it is set and not empty nothing is coloured; elsewhere only a terminal is.
+"""
+
+
+def man_line(verb):
+    return f"*{escape(verb.name)}*\n\t{escape(verb.help[0].upper() + verb.help[1:])}. *pursuit-{escape(verb.name)}*(1)\n"
+
+
+def fill(template, values):
+    with open(template, encoding="utf-8") as file:
+        text = file.read()
+    return re.sub(r"@([A-Z]+)@", lambda found: values[found.group(1)], text)
 
 
 def man(template, pursuit, pursuitd):
     verbs, daemon = commands(pursuit, pursuitd)
-    with open(template, encoding="utf-8") as file:
-        text = file.read()
-    text = text.replace("@OPTIONS@", "\n".join(man_option(option) for option in daemon.options))
-    return text.replace("@VERBS@", "\n".join(man_verb(verb) for verb in verbs))
+    return fill(template, {"OPTIONS": "\n".join(man_option(option) for option in daemon.options),
+                           "VERBS": "\n".join(man_line(verb) for verb in verbs),
+                           "SEE": ", ".join(f"*pursuit-{escape(verb.name)}*(1)" for verb in verbs)})
+
+
+def man_verb(template, name, pursuit, _pursuitd):
+    verb = verbs_of(pursuit, name)[0]
+    has_socket = any(option[0] == "socket" for option in verb.options)
+    pages = [f"pursuit-{other}" for other in verb.related]
+    help_row = ("help", "", "", "show what this page says, shortly", "", "")
+    return fill(template, {
+        "PAGE": f"pursuit-{verb.name}",
+        "VERB": escape(verb.name),
+        "HELP": escape(verb.help),
+        "USAGE": escape(" ".join(verb.texts["usage"])),
+        "SUMMARY": escape(" ".join(verb.texts["summary"])),
+        "OPTIONS": "\n".join(man_option(option) for option in [*verb.options, help_row]),
+        "EXAMPLES": "\n".join(line.removeprefix("  ") for line in verb.texts["example"]),
+        "STATUS": escape(" ".join(verb.texts["status"])),
+        "ENVIRONMENT": (SOCKET if has_socket else "") + NO_COLOR,
+        "SEE": ", ".join(f"*{escape(page)}*(1)" for page in ["pursuit", *pages, "pursuitd"]),
+    })
+
+
+def roff(scdoc, page):
+    """Empty paragraphs go, lines that are read anew are short, and the title is as titles of pages are."""
+    with open(page, encoding="utf-8") as source:
+        made = subprocess.run([scdoc], stdin=source, capture_output=True, text=True, check=True).stdout.splitlines()
+    lines, as_written = [], False
+    for line in (line.rstrip() for line in made):
+        as_written = line == ".nf" or (as_written and line != ".fi")
+        if not as_written and line.startswith((".SH", ".SS", ".RE", ".P")):
+            while lines and lines[-1] == ".P":
+                lines.pop()
+        if line == ".P" and lines and lines[-1].startswith((".SH", ".SS", ".TH")):
+            continue
+        if line.startswith(".TH"):
+            line = line.split('"')
+            line[1] = line[1].upper()
+            line = '"'.join(line)
+        whole = as_written or line.startswith(".")
+        # a line must not begin with what roff takes for a command
+        lines += [line] if whole else textwrap.wrap(re.sub(r" (?=[.'])", "\0", line), 78, break_long_words=False,
+                                                    break_on_hyphens=False) or [line]
+    return "\n".join(line.replace("\0", " ") for line in lines) + "\n"
 
 
 # ---- completions ----
@@ -138,8 +196,13 @@ def fish(verbs, daemon):
 
 def main():
     kind, programs = sys.argv[1], sys.argv[-2:]
+    if kind == "roff":
+        sys.stdout.write(roff(sys.argv[2], sys.argv[3]))
+        return
     if kind == "man":
         sys.stdout.write(man(sys.argv[2], *programs))
+    elif kind == "verb":
+        sys.stdout.write(man_verb(sys.argv[2], sys.argv[3], *programs))
     else:
         sys.stdout.write({"bash": bash, "zsh": zsh, "fish": fish}[kind](*commands(*programs)))
 

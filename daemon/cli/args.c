@@ -253,6 +253,8 @@ static void print_help(const struct args *args)
 		printf("\nsettings shared with pursuitd\n");
 		settings_print_help(args->groups, stdout);
 	}
+	printf("\nexit status: 0 done, 1 failed, 2 used wrongly%s%s\n", args->status ? "; 1 also means: " : "",
+		   args->status ? args->status : "");
 	if (args->examples)
 		printf("\nexamples\n%s", args->examples);
 }
@@ -280,6 +282,8 @@ static void print_options(const struct args *args)
 	}
 	if (args->settings && args->groups)
 		settings_print_options(args->groups, stdout);
+	if (args->status)
+		printf("status\t1 also means: %s.\n", args->status);
 	print_lines("example", args->examples);
 }
 

@@ -53,6 +53,7 @@ struct args {
 	const char *usage;   /* what follows the verb */
 	const char *summary; /* a sentence or two */
 	const char *examples;
+	const char *status;         /* what exit status 1 means beside "failed"; may be NULL */
 	const struct arg_row *rows; /* ended by a row without name; may be NULL */
 	struct settings *settings;  /* with `groups`: rows of options.h taken too; may be NULL */
 	unsigned groups;            /* 1 << OPTION_ENGINE, ... */

@@ -190,3 +190,30 @@ int control_ask(struct control *control, const char *text, int fd, json_t **repl
 		*reply = read_reply(answer, length);
 	return 0;
 }
+
+/* The daemon's `name = value` lines as an object, in their order. */
+static json_t *read_settings(const char *text)
+{
+	json_t *object = json_object();
+	while (text && *text) {
+		const size_t length = strcspn(text, "\n");
+		const char *equals = strstr(text, " = ");
+		char name[64];
+		if (equals && equals < text + length && (size_t)(equals - text) < sizeof(name)) {
+			snprintf(name, sizeof(name), "%.*s", (int)(equals - text), text);
+			json_object_set_new(object, name, json_stringn(equals + 3, (size_t)(text + length - equals) - 3));
+		}
+		text += length + (text[length] == '\n');
+	}
+	return object;
+}
+
+int control_ask_settings(struct control *control, json_t **settings, struct error *error)
+{
+	json_t *reply = NULL;
+	const int result = control_ask(control, "settings", -1, &reply, error);
+	if (result == 0)
+		*settings = read_settings(json_string_value(reply));
+	json_decref(reply);
+	return result;
+}

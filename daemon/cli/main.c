@@ -15,24 +15,30 @@ struct verb {
 	const char *name;
 	int (*run)(int argc, char **argv);
 	const char *help;
+	const char *related; /* verbs to read about next, with spaces between */
 };
 
 static const struct verb verbs[] = {
-	{"demo", verb_demo, "run the daemon and a scene that feeds it, and report what was displayed"},
-	{"record", verb_record, "write a built-in scene, or what a running daemon receives, into a recording"},
-	{"replay", verb_replay, "play a recording headless and deterministically, score it, compare it"},
-	{"report", verb_report, "error against run time: every method, every scene, as a page"},
-	{"import", verb_import, "make a recording from sequences of images"},
-	{"export", verb_export, "write the frames of a recording as images or video"},
-	{"check-stream", verb_check_stream, "find what is wrong with the motion, depth or times of a stream"},
-	{"latency", verb_latency, "print, plot and compare the time points of displayed frames; measure a GPIO line"},
-	{"doctor", verb_doctor, "look at this machine: what works, what does not, what mends it"},
-	{"top", verb_top, "show live what a running daemon does"},
-	{"get", verb_get, "print the settings of a running daemon"},
-	{"set", verb_set, "change settings of a running daemon"},
-	{"profile", verb_profile, "settings of one application, by the name of its executable"},
-	{"status", verb_status, "say what a running daemon does"},
-	{NULL, NULL, NULL},
+	{"demo", verb_demo, "run the daemon and a scene that feeds it, and report what was displayed",
+	 "doctor report record"},
+	{"record", verb_record, "write a built-in scene, or what a running daemon receives, into a recording",
+	 "replay check-stream export"},
+	{"replay", verb_replay, "play a recording headless and deterministically, score it, compare it",
+	 "record report export"},
+	{"report", verb_report, "error against run time: every method, every scene, as a page", "replay record"},
+	{"import", verb_import, "make a recording from sequences of images", "export check-stream replay"},
+	{"export", verb_export, "write the frames of a recording as images or video", "import record"},
+	{"check-stream", verb_check_stream, "find what is wrong with the motion, depth or times of a stream",
+	 "record doctor"},
+	{"latency", verb_latency, "print, plot and compare the time points of displayed frames; measure a GPIO line",
+	 "top doctor"},
+	{"doctor", verb_doctor, "look at this machine: what works, what does not, what mends it", "status demo"},
+	{"top", verb_top, "show live what a running daemon does", "status set latency"},
+	{"get", verb_get, "print the settings of a running daemon", "set profile status"},
+	{"set", verb_set, "change settings of a running daemon", "get profile top"},
+	{"profile", verb_profile, "settings of one application, by the name of its executable", "set get status"},
+	{"status", verb_status, "say what a running daemon does", "top get"},
+	{NULL, NULL, NULL, NULL},
 };
 
 static void print_help(FILE *out)
@@ -77,7 +83,7 @@ int main(int argc, char **argv)
 	}
 	if (strcmp(argv[1], "--print-verbs") == 0) { /* for the programs that make man pages and shell completions */
 		for (const struct verb *verb = verbs; verb->name; verb++)
-			printf("%s\t%s\n", verb->name, verb->help);
+			printf("%s\t%s\t%s\n", verb->name, verb->help, verb->related);
 		return STATUS_DONE;
 	}
 	for (const struct verb *verb = verbs; verb->name; verb++) {

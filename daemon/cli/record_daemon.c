@@ -34,30 +34,28 @@ static json_int_t number_of(const json_t *reply, const char *name)
 	return json_integer_value(json_object_get(reply, name));
 }
 
-/* Asks for the end and says what there is. */
-static int stop(struct control *control, const char *path, FILE *out, struct error *error)
+/* Asks for the end. */
+static int stop(struct control *control, const char *path, json_t **written, struct error *error)
 {
 	json_t *reply = NULL;
 	int result = control_ask(control, "record-stop", -1, &reply, error);
 	if (result < 0)
 		return result;
-	json_int_t frames = number_of(reply, "frames"), dropped = number_of(reply, "dropped");
-	fprintf(out, "%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", path, frames, (double)number_of(reply, "bytes") / 1e6);
-	if (dropped)
-		fprintf(out, ", %" JSON_INTEGER_FORMAT " frames dropped because the disk was slower", dropped);
-	fprintf(out, "\n");
-	if (frames == 0)
+	if (number_of(reply, "frames") == 0)
 		fprintf(stderr, "pursuit record: no frame came; does a client run? `pursuit status` says\n");
+	*written = json_pack("{s:s, s:I, s:I, s:I}", "recording", path, "frames", number_of(reply, "frames"), "dropped",
+						 number_of(reply, "dropped"), "bytes", number_of(reply, "bytes"));
 	json_decref(reply);
 	return 0;
 }
 
-int record_daemon(const char *path, const char *socket, double seconds, FILE *out)
+int record_daemon(const char *path, const char *socket, double seconds, json_t **written)
 {
 	struct control control;
 	struct error error = {{0}};
 	if (control_open(&control, socket, &error) < 0)
 		return args_failed(VERB, "%s. A scene needs none: pursuit record %s --scene colonnade", error.text, path);
+	*written = NULL;
 	int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), result;
 	if (fd < 0) {
 		result = error_set(&error, -errno, "%s: %s", path, strerror(errno));
@@ -69,7 +67,7 @@ int record_daemon(const char *path, const char *socket, double seconds, FILE *ou
 			if (isatty(STDERR_FILENO))
 				fprintf(stderr, "recording until %s\n", seconds > 0 ? "the time is over, or Ctrl-C" : "Ctrl-C");
 			wait_until_over(seconds);
-			result = stop(&control, path, out, &error);
+			result = stop(&control, path, written, &error);
 		}
 	}
 	control_close(&control);

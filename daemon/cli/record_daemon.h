@@ -5,10 +5,11 @@
 #ifndef PURSUIT_CLI_RECORD_DAEMON_H
 #define PURSUIT_CLI_RECORD_DAEMON_H
 
-#include <stdio.h>
+#include <jansson.h>
 
-/* seconds 0: until Ctrl-C. socket NULL: the usual one. What was written is said on `out`. Gives the exit status back.
+/* seconds 0: until Ctrl-C. socket NULL: the usual one. *written becomes
+ * {recording, frames, dropped, bytes}, to be given to json_decref(). Gives the exit status back.
  */
-int record_daemon(const char *path, const char *socket, double seconds, FILE *out);
+int record_daemon(const char *path, const char *socket, double seconds, json_t **written);
 
 #endif

@@ -71,7 +71,7 @@ struct report_options {
 	const char *scenes, *recordings, *methods, *sizes, *ns, *vary, *settings_list, *tables;
 	const char *out, *baseline, *fail_under;
 	double fail_worse; /* percent; < 0: not asked for */
-	bool full;
+	bool full, json;
 	uint32_t antialias;
 	struct arg_rate refresh;
 	struct settings settings;

@@ -15,6 +15,7 @@
 #include "args.h"
 #include "daemon/measure/inspect.h"
 #include "daemon/record/recording.h"
+#include "json_out.h"
 #include "progress.h"
 #include "record_daemon.h"
 #include "stream_view.h"
@@ -45,8 +46,9 @@ static bool parse(struct check_options *options, int argc, char **argv, int *sta
 		.usage = "[IN.pursuit] [--json]",
 		.summary = "Looks for the usual mistakes in a recording, or in what a running daemon receives now: motion of\n"
 				   "the wrong sign, unit, scale or kind, depth the wrong way round, jitter that was not taken out,\n"
-				   "planes that stand still, intervals that are not those of the times. Exit status 1 if there is a\n"
-				   "mistake. The picture must move while it looks; let the camera turn and something pass by.",
+				   "planes that stand still, intervals that are not those of the times. The\n"
+				   "picture must move while it looks; let the camera turn and something pass by.",
+		.status = "there is a mistake in the stream",
 		.examples = "  pursuit check-stream game.pursuit\n"
 					"  pursuit check-stream --seconds 5\n"
 					"      what the clients of the running daemon send now\n",
@@ -134,10 +136,7 @@ static int print_json(const struct inspect *inspect, const struct inspect_findin
 		json_object_set_new(json, "change", json_real(change));
 		json_object_set_new(json, "unexplained", json_real(left));
 	}
-	const bool done = json && json_dumpf(json, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(6)) == 0;
-	json_decref(json);
-	printf("\n");
-	return done ? STATUS_DONE : STATUS_FAILED;
+	return json_out(VERB, json);
 }
 
 static int check_recording(const char *path, const struct check_options *options)
@@ -175,7 +174,9 @@ static int check_daemon(const struct check_options *options)
 	if (fd < 0)
 		return args_failed(VERB, "%s: %s", path, strerror(errno));
 	close(fd);
-	int status = record_daemon(path, options->socket, options->seconds, stderr);
+	json_t *written = NULL;
+	int status = record_daemon(path, options->socket, options->seconds, &written);
+	json_decref(written);
 	if (status == STATUS_DONE)
 		status = check_recording(path, options);
 	unlink(path);

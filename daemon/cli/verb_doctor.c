@@ -6,11 +6,11 @@
 #include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <unistd.h>
 
 #include "args.h"
+#include "color.h"
 #include "doctor.h"
+#include "json_out.h"
 #include "verbs.h"
 
 #define VERB "doctor"
@@ -32,16 +32,10 @@ void doctor_add(struct doctor *doctor, enum doctor_state state, const char *area
 	va_end(arguments);
 }
 
-static bool wants_color(void)
-{
-	const char *none = getenv("NO_COLOR"), *terminal = getenv("TERM");
-	return isatty(STDOUT_FILENO) && !(none && *none) && terminal && *terminal;
-}
-
 static void print_text(const struct doctor *doctor)
 {
 	static const char *const colors[] = {"\033[32m", "\033[36m", "\033[33m", "\033[31m"};
-	const bool color = wants_color();
+	const bool color = color_is_wanted();
 	for (uint32_t i = 0; i < doctor->count; i++) {
 		const struct doctor_finding *finding = &doctor->findings[i];
 		printf("%s%-5s%s  %-10s  %s\n", color ? colors[finding->state] : "", words[finding->state],
@@ -59,11 +53,7 @@ static int print_json(const struct doctor *doctor)
 		json_array_append_new(list, json_pack("{s:s, s:s, s:s, s:s}", "state", words[finding->state], "area",
 											  finding->area, "text", finding->text, "mend", finding->mend));
 	}
-	json_t *json = json_pack("{s:o}", "findings", list);
-	const bool done = json && json_dumpf(json, stdout, JSON_INDENT(1)) == 0;
-	json_decref(json);
-	printf("\n");
-	return done ? STATUS_DONE : STATUS_FAILED;
+	return json_out(VERB, json_pack("{s:o}", "findings", list));
 }
 
 int verb_doctor(int argc, char **argv)
@@ -79,8 +69,8 @@ int verb_doctor(int argc, char **argv)
 		.verb = VERB,
 		.usage = "[--json]",
 		.summary = "Looks at this machine: renderers, displays and their rates, GPIO chips, priorities, the daemon.\n"
-				   "Says in plain words what works and what mends the rest. Exit status 1 if something that every\n"
-				   "use needs does not work.",
+				   "Says in plain words what works and what mends the rest.",
+		.status = "something that every use needs does not work",
 		.examples = "  pursuit doctor\n",
 		.rows = rows,
 	};

@@ -11,6 +11,7 @@
 #include "args.h"
 #include "daemon/record/export.h"
 #include "daemon/record/pattern.h"
+#include "json_out.h"
 #include "verbs.h"
 
 #define NOT_GIVEN UINT32_MAX
@@ -41,9 +42,9 @@ static bool parse(struct export_options *options, int argc, char **argv, int *st
 	const struct args args = {
 		.verb = argv[0],
 		.usage = "IN.pursuit [--color PATTERN] [--depth PATTERN] [--motion PATTERN] [--ui PATTERN] [--y4m FILE|-]",
-		.summary =
-			"Writes the frames of a recording as images and video. Frames have the numbers that their images\n"
-			"had at import, else 0, 1, 2 and so on. What is damaged is named and left out; the exit status is then 1.",
+		.summary = "Writes the frames of a recording as images and video. Frames have the numbers that their images\n"
+				   "had at import, else 0, 1, 2 and so on. What is damaged is named and left out.",
+		.status = "a frame was damaged",
 		.examples = "  pursuit export walk.pursuit --color 'c_%04d.png' --depth 'd_%04d.pfm' --motion 'm_%04d.pfm'\n"
 					"  pursuit export walk.pursuit --y4m - | ffmpeg -i - walk.mp4\n"
 					"  pursuit export walk.pursuit --y4m walk.y4m --chroma 444 --first 10 --last 40\n",
@@ -85,10 +86,7 @@ static int print_json(const char *path, const struct export_summary *s)
 {
 	json_t *json = json_pack("{s:s, s:I, s:I, s:I}", "recording", path, "frames", (json_int_t)s->frames,
 							 "damaged_chunks", (json_int_t)s->damaged, "files", (json_int_t)s->files);
-	const bool done = json && json_dumpf(json, stdout, JSON_INDENT(2)) == 0;
-	json_decref(json);
-	printf("\n");
-	return done ? STATUS_DONE : STATUS_FAILED;
+	return json_out("export", json);
 }
 
 int verb_export(int argc, char **argv)

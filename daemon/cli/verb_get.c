@@ -7,27 +7,11 @@
 
 #include "args.h"
 #include "control.h"
+#include "json_out.h"
 #include "verbs.h"
 
 #define VERB "get"
 #define NAMES 64u
-
-/* The daemon's `name = value` lines as an object, in their order. */
-static json_t *read_settings(const char *text)
-{
-	json_t *object = json_object();
-	while (text && *text) {
-		const size_t length = strcspn(text, "\n");
-		const char *equals = strstr(text, " = ");
-		char name[64];
-		if (equals && equals < text + length && (size_t)(equals - text) < sizeof(name)) {
-			snprintf(name, sizeof(name), "%.*s", (int)(equals - text), text);
-			json_object_set_new(object, name, json_stringn(equals + 3, (size_t)(text + length - equals) - 3));
-		}
-		text += length + (text[length] == '\n');
-	}
-	return object;
-}
 
 /* Those that were asked for; all, if none was. NULL after a sentence: the daemon has no such one. */
 static json_t *choose(json_t *all, const char *const *names, unsigned count)
@@ -47,15 +31,10 @@ static json_t *choose(json_t *all, const char *const *names, unsigned count)
 	return chosen;
 }
 
-static void print(json_t *settings, bool as_json, bool bare)
+static void print(json_t *settings, bool bare)
 {
 	const char *name;
 	json_t *value;
-	if (as_json) {
-		json_dumpf(settings, stdout, JSON_INDENT(1));
-		putchar('\n');
-		return;
-	}
 	json_object_foreach(settings, name, value)
 	{
 		if (bare)
@@ -90,22 +69,23 @@ int verb_get(int argc, char **argv)
 	};
 	struct control control;
 	struct error error = {{0}};
-	json_t *reply = NULL;
+	json_t *all = NULL;
 	int status;
 	if (!args_parse(&args, argc, argv, &status))
 		return status;
 	if (control_open(&control, socket, &error) < 0)
 		return args_failed(VERB, "%s", error.text);
-	const int result = control_ask(&control, "settings", -1, &reply, &error);
+	const int result = control_ask_settings(&control, &all, &error);
 	control_close(&control);
 	if (result < 0)
 		return args_failed(VERB, "%s", error.text);
-	json_t *all = read_settings(json_string_value(reply)), *chosen = choose(all, names, count);
-	if (chosen)
-		print(chosen, as_json, count == 1);
+	json_t *chosen = choose(all, names, count);
 	status = chosen ? STATUS_DONE : STATUS_USAGE;
+	if (chosen && as_json)
+		status = json_out(VERB, json_incref(chosen));
+	else if (chosen)
+		print(chosen, count == 1);
 	json_decref(chosen);
 	json_decref(all);
-	json_decref(reply);
 	return status;
 }

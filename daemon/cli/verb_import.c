@@ -11,6 +11,7 @@
 #include "args.h"
 #include "daemon/record/import.h"
 #include "daemon/record/pattern.h"
+#include "json_out.h"
 #include "proto/frame.h"
 #include "verbs.h"
 
@@ -123,10 +124,7 @@ static int print_json(const char *path, const struct import_summary *s)
 				  "truth_only_frames", (json_int_t)s->truth_only, "first", (json_int_t)s->first, "last",
 				  (json_int_t)s->last, "width", (int)s->width, "height", (int)s->height, "half_motion_frames",
 				  (json_int_t)s->half_motion, "bytes", (json_int_t)s->bytes);
-	const bool done = json && json_dumpf(json, stdout, JSON_INDENT(2)) == 0;
-	json_decref(json);
-	printf("\n");
-	return done ? STATUS_DONE : STATUS_FAILED;
+	return json_out("import", json);
 }
 
 int verb_import(int argc, char **argv)

@@ -12,6 +12,7 @@
 #include "args.h"
 #include "control.h"
 #include "daemon/setting_check.h"
+#include "json_out.h"
 #include "profile_file.h"
 #include "verbs.h"
 
@@ -78,14 +79,6 @@ static json_t *profile_json(const struct profile *profile)
 	return object;
 }
 
-static int print_json(json_t *object)
-{
-	const bool done = object && json_dumpf(object, stdout, JSON_INDENT(1)) == 0;
-	json_decref(object);
-	putchar('\n');
-	return done ? STATUS_DONE : STATUS_FAILED;
-}
-
 /* Names may be of any bytes, JSON is UTF-8. */
 static int list_json(const struct profile_file *file)
 {
@@ -97,7 +90,7 @@ static int list_json(const struct profile_file *file)
 			fprintf(stderr, "pursuit " VERB ": the name in line %u is no UTF-8 and is left out\n", profile->line);
 		json_decref(settings);
 	}
-	return print_json(json_pack("{s:s, s:o}", "file", file->path, "applications", applications));
+	return json_out(VERB, json_pack("{s:s, s:o}", "file", file->path, "applications", applications));
 }
 
 static void print_settings(const struct profile *profile, const char *indent)
@@ -136,7 +129,7 @@ static int do_show(const struct profile_options *options, struct profile_file *f
 	if (!profile)
 		return no_profile(options->words[1], file);
 	if (options->json)
-		return print_json(profile_json(profile));
+		return json_out(VERB, profile_json(profile));
 	print_settings(profile, "");
 	return STATUS_DONE;
 }
@@ -246,7 +239,7 @@ static int run(const struct profile_options *options, const struct action *actio
 	if (status == STATUS_DONE && action->changes) {
 		tell_daemon(options, &file);
 		if (options->json)
-			status = print_json(json_pack("{s:s, s:s}", "file", file.path, "done", action->name));
+			status = json_out(VERB, json_pack("{s:s, s:s}", "file", file.path, "done", action->name));
 	}
 	profile_file_close(&file);
 	return status;

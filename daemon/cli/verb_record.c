@@ -9,6 +9,7 @@
 
 #include "args.h"
 #include "daemon/record/recording.h"
+#include "json_out.h"
 #include "progress.h"
 #include "record_daemon.h"
 #include "scene_source.h"
@@ -32,7 +33,7 @@ struct record_options {
 	struct arg_rate rate;
 	double seconds;
 	uint32_t motion, color, depth, motion_format;
-	bool object_id;
+	bool object_id, json;
 };
 
 static bool read_options(struct record_options *options, int argc, char **argv, int *status)
@@ -52,6 +53,7 @@ static bool read_options(struct record_options *options, int argc, char **argv, 
 		 "f32 (default), unorm24 or unorm16"},
 		{"motion-format", ARG_CHOICE, &options->motion_format, 0, 0, motion_formats, "FORMAT", "f16 (default) or f32"},
 		{"object-id", ARG_FLAG, &options->object_id, 0, 0, NULL, NULL, "a plane of object ids too"},
+		{"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print what was recorded as JSON"},
 		{"socket", ARG_TEXT, &options->socket, 0, 0, NULL, "PATH", "of the daemon, where it is not the usual one"},
 		{NULL},
 	};
@@ -138,8 +140,32 @@ static int record_scene(const struct record_options *options)
 		return args_failed("record", "%s (%" PRIu64 " of %" PRIu64 " frames written)", error.text, frames, count);
 	if (closed < 0)
 		return args_failed("record", "%s", close_error.text);
+	if (options->json)
+		return json_out("record",
+						json_pack("{s:s, s:s, s:I, s:i, s:i, s:I}", "recording", options->path, "scene", options->scene,
+								  "frames", (json_int_t)frames, "width", (int)options->size.width, "height",
+								  (int)options->size.height, "bytes", (json_int_t)bytes));
 	printf("%s: %" PRIu64 " frames of %s, %ux%u, %.1f MB\n", options->path, frames, options->scene, options->size.width,
 		   options->size.height, (double)bytes / 1e6);
+	return STATUS_DONE;
+}
+
+static int record_received(const struct record_options *options)
+{
+	json_t *written = NULL;
+	const int status = record_daemon(options->path, options->socket, options->seconds, &written);
+	if (status != STATUS_DONE)
+		return status;
+	if (options->json)
+		return json_out("record", written);
+	const json_int_t dropped = json_integer_value(json_object_get(written, "dropped"));
+	printf("%s: %" JSON_INTEGER_FORMAT " frames, %.1f MB", options->path,
+		   json_integer_value(json_object_get(written, "frames")),
+		   (double)json_integer_value(json_object_get(written, "bytes")) / 1e6);
+	if (dropped)
+		printf(", %" JSON_INTEGER_FORMAT " frames dropped because the disk was slower", dropped);
+	putchar('\n');
+	json_decref(written);
 	return STATUS_DONE;
 }
 
@@ -150,7 +176,7 @@ int verb_record(int argc, char **argv)
 	if (!read_options(&options, argc, argv, &status))
 		return status;
 	if (!options.scene)
-		return record_daemon(options.path, options.socket, options.seconds, stdout);
+		return record_received(&options);
 	if (options.seconds <= 0)
 		options.seconds = 2;
 	return record_scene(&options);

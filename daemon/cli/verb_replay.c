@@ -73,6 +73,7 @@ static bool read_options(struct replay_options *options, int argc, char **argv, 
 		.summary = "Plays a recording through the engine, headless, on a virtual clock: the same recording gives the\n"
 				   "same pictures, bit for bit, on one renderer. In-betweens that fall on the moment of a recorded\n"
 				   "frame that was not fed as a real one are scored against it.",
+		.status = "what --fail-under or --expect demands is not there",
 		.examples = "  pursuit replay colonnade.pursuit --every 2 --method grid --fail-under psnr=30\n"
 					"      hide every second frame, make it from the one before, fail if that got worse\n"
 					"  pursuit replay walk.pursuit --predict --write-frames 'p_%04d.png' --json walk.json\n"

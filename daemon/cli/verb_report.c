@@ -35,6 +35,7 @@ static bool read_options(struct report_options *options, int argc, char **argv, 
 		{"tables", ARG_TEXT, &options->tables, 0, 0, NULL, "LIST",
 		 "JSON files with tables for the page: those of the stability tests (their --json), or {title, columns, rows}"},
 		{"baseline", ARG_TEXT, &options->baseline, 0, 0, NULL, "OLD.json", "print what changed since that report"},
+		{"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print report.json instead of tables"},
 		{"fail-worse", ARG_REAL, &options->fail_worse, 0, 1000, NULL, "PERCENT",
 		 "with --baseline: exit status 1 if a measure of a row got worse by more than this"},
 		{"fail-under", ARG_TEXT, &options->fail_under, 0, 0, NULL, "LIMITS",
@@ -48,6 +49,7 @@ static bool read_options(struct report_options *options, int argc, char **argv, 
 			"Error against run time: plays scenes and recordings with every method and some settings, measures\n"
 			"engine time, what an eye sees of the display, and the rest, and writes report.json, report.csv (one\n"
 			"row for each scene, method and setting) and report.html. Ctrl-C ends it early with what it has.",
+		.status = "what --fail-under or --fail-worse demands is not there",
 		.examples = "  pursuit report\n"
 					"      all scenes and methods, about ten minutes on two cores\n"
 					"  pursuit report --scenes tower,fan --methods hold,grid --n 2 --out before\n"
@@ -140,12 +142,25 @@ static int write_all(struct report *report, struct error *error)
 	return result == 0 ? report_write_page(report, error) : result;
 }
 
+/* The file as it was written. */
+static void print_json(const struct report *report)
+{
+	char path[4096], buffer[65536];
+	snprintf(path, sizeof(path), "%s/report.json", report->options.out);
+	FILE *file = fopen(path, "re");
+	for (size_t got; file && (got = fread(buffer, 1, sizeof(buffer), file)) > 0;)
+		fwrite(buffer, 1, got, stdout);
+	if (file)
+		fclose(file);
+}
+
 static int judge(const struct report *report)
 {
 	const struct report_options *options = &report->options;
 	uint32_t worse = 0, beyond = report_below_limits(report, stderr);
 	struct error error;
-	if (options->baseline && report_compare(report, options->baseline, options->fail_worse, &worse, stdout, &error) < 0)
+	if (options->baseline && report_compare(report, options->baseline, options->fail_worse, &worse,
+											options->json ? stderr : stdout, &error) < 0)
 		return args_failed(VERB, "%s", error.text);
 	return worse || beyond ? STATUS_FAILED : STATUS_DONE;
 }
@@ -157,7 +172,9 @@ static int run(struct report *report)
 	note_start(report);
 	const int result = measure(report, &error);
 	const int written = write_all(report, &later);
-	if (report->row_count) {
+	if (report->row_count && report->options.json) {
+		print_json(report);
+	} else if (report->row_count) {
 		report_print(report, stdout);
 		printf("%u rows in %.0f s; see %s/report.html\n", report->row_count, report->seconds, report->options.out);
 	}

@@ -6,39 +6,64 @@
 
 #include "args.h"
 #include "control.h"
+#include "json_out.h"
 #include "verbs.h"
 
 #define VERB "set"
 #define CHANGES 32u
 
 /* What the daemon is asked. False: it does not fit. */
-static bool write_request(char *request, size_t size, const char *const *changes, unsigned count)
+static bool write_request(char *request, size_t size, const char *what, const char *const *changes, unsigned count)
 {
-	size_t used = (size_t)snprintf(request, size, "set");
+	size_t used = (size_t)snprintf(request, size, "%s", what);
 	for (unsigned i = 0; i < count && used < size; i++)
 		used += (size_t)snprintf(request + used, size - used, " %s", changes[i]);
 	return used < size;
 }
 
+/* The settings that were named, as they are now. focus is none of them. */
+static int ask_settings(struct control *control, const char *const *changes, unsigned count, json_t **now,
+						struct error *error)
+{
+	json_t *all = NULL;
+	const int result = control_ask_settings(control, &all, error);
+	*now = json_object();
+	for (unsigned i = 0; i < count && result == 0; i++) {
+		char name[64];
+		snprintf(name, sizeof(name), "%.*s", (int)strcspn(changes[i], "="), changes[i]);
+		if (json_object_get(all, name))
+			json_object_set(*now, name, json_object_get(all, name));
+	}
+	json_decref(all);
+	return result;
+}
+
 int verb_set(int argc, char **argv)
 {
+	bool as_json = false, undo = false;
 	const char *socket = NULL, *changes[CHANGES] = {NULL};
 	unsigned count = 0;
 	char request[256];
 	const struct arg_row rows[] = {
+		{"undo", ARG_FLAG, &undo, 0, 0, NULL, NULL,
+		 "take back what was set: NAMEs alone; they are again as the configuration says"},
+		{"json", ARG_FLAG, &as_json, 0, 0, NULL, NULL, "the changed settings as they are now, as one JSON object"},
 		{"socket", ARG_TEXT, &socket, 0, 0, NULL, "PATH", "of the daemon, where it is not the usual one"},
 		{NULL},
 	};
 	const struct args args = {
 		.verb = VERB,
-		.usage = "NAME=VALUE...",
+		.usage = "NAME=VALUE... | --undo NAME...",
 		.summary =
 			"Changes settings of the running daemon, all of those given or none of them; those of the picture from\n"
 			"the next real frame on. Which client is shown changes with focus=CLIENT, alone. Settings that cannot\n"
-			"change while the daemon runs are refused.",
+			"change while the daemon runs are refused. What is set goes before the configuration file and the "
+			"profiles\n"
+			"of applications, until it is taken back or the daemon ends.",
 		.examples = "  pursuit set method=grid\n"
 					"  pursuit set blur=everywhere cell=16\n"
 					"  pursuit set governor=off level=0\n"
+					"  pursuit set --undo blur cell\n"
 					"  pursuit set focus='the game'\n",
 		.rows = rows,
 		.positionals = changes,
@@ -52,13 +77,20 @@ int verb_set(int argc, char **argv)
 	if (!args_parse(&args, argc, argv, &status))
 		return status;
 	for (unsigned i = 0; i < count; i++)
-		if (!strchr(changes[i], '='))
-			return args_wrong(VERB, "%s is not of the form NAME=VALUE", changes[i]);
-	if (!write_request(request, sizeof(request), changes, count))
+		if (!strchr(changes[i], '=') != undo)
+			return args_wrong(
+				VERB, undo ? "%s: to take a setting back its NAME is enough" : "%s is not of the form NAME=VALUE",
+				changes[i]);
+	if (!write_request(request, sizeof(request), undo ? "unset" : "set", changes, count))
 		return args_wrong(VERB, "more than %zu bytes of settings at once", sizeof(request) - sizeof("set "));
 	if (control_open(&control, socket, &error) < 0)
 		return args_failed(VERB, "%s", error.text);
-	const int result = control_ask(&control, request, -1, NULL, &error);
+	json_t *now = NULL;
+	int result = control_ask(&control, request, -1, NULL, &error);
+	if (result == 0 && as_json)
+		result = ask_settings(&control, changes, count, &now, &error);
 	control_close(&control);
-	return result < 0 ? args_failed(VERB, "%s", error.text) : STATUS_DONE;
+	if (result < 0)
+		return args_failed(VERB, "%s", error.text);
+	return as_json ? json_out(VERB, now) : STATUS_DONE;
 }

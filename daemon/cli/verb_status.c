@@ -8,6 +8,7 @@
 
 #include "args.h"
 #include "control.h"
+#include "json_out.h"
 #include "verbs.h"
 
 #define VERB "status"
@@ -84,9 +85,10 @@ int verb_status(int argc, char **argv)
 	const struct args args = {
 		.verb = VERB,
 		.usage = "[--json]",
-		.summary = "Says what the running daemon does: its streams and outputs with their figures.",
+		.summary =
+			"Says what the running daemon does: its streams, its output and its configuration, with their figures.",
 		.examples = "  pursuit status\n"
-					"  pursuit status --json | jq .outputs[0].displayed_hz\n",
+					"  pursuit status --json | jq .displayed_hz\n",
 		.rows = rows,
 	};
 	struct control control;
@@ -101,12 +103,9 @@ int verb_status(int argc, char **argv)
 	control_close(&control);
 	if (result < 0)
 		return args_failed(VERB, "%s", error.text);
-	if (as_json) {
-		json_dumpf(reply, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
-		putchar('\n');
-	} else {
-		print_status(reply);
-	}
+	if (as_json)
+		return json_out(VERB, reply);
+	print_status(reply);
 	json_decref(reply);
 	return STATUS_DONE;
 }

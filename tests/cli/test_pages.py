@@ -38,15 +38,32 @@ class Pages(common.Case):
         listed = re.findall(r"(?m)^  ([a-z-]+)  ", self.must("--help").stdout)
         self.assertEqual(listed, self.verbs())
 
-    def test_the_page_of_the_command_has_every_option_of_every_verb(self):
+    def test_the_page_of_the_command_names_every_verb(self):
         page = pages("man", MAN + "/pursuit.1.scd")
-        sections = dict(re.findall(r"(?ms)^## pursuit ([a-z-]+) (.*?)(?=^##? |\Z)", page))
-        self.assertEqual(list(sections), self.verbs())
+        self.assertEqual(re.findall(r"(?m)^\*([a-z-]+)\*$", page), self.verbs())
         for verb in self.verbs():
-            options = self.options(self.must(verb, "--help").stdout)
-            self.assertGreater(len(options), 0, verb)
-            for option in options:
-                self.assertRegex(sections[verb], rf"(?m)^\*--(\[no-\])?{option}\*", verb)
+            self.assertEqual(page.count(f"*pursuit-{verb}*(1)"), 2, verb)
+
+    def test_every_verb_has_its_page_installed(self):
+        with open(os.path.join(os.path.dirname(MAN), "meson.build"), encoding="utf-8") as source:
+            listed = re.search(r"(?s)verbs = \[(.*?)\]", source.read()).group(1)
+        self.assertEqual(re.findall(r"'([a-z-]+)'", listed), sorted(self.verbs()))
+
+    def test_the_page_of_a_verb_says_what_help_says(self):
+        for verb in self.verbs():
+            page = pages("verb", MAN + "/verb.1.scd", verb)
+            text = self.must(verb, "--help").stdout
+            for section in "NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXAMPLES", "EXIT STATUS", "SEE ALSO":
+                self.assertIn(f"# {section}\n", page, verb)
+            for option in self.options(text):
+                self.assertRegex(page, rf"(?m)^\*--(\[no-\])?{option}\*", verb)
+            plain = page.replace("\\", "")
+            for line in text.split("\nexamples\n")[1].splitlines():
+                self.assertIn(line.strip(), page, verb)
+            for line in text.split("\n\n")[1].splitlines():
+                self.assertIn(line, plain, verb)
+            related = re.findall(r"\*pursuit-([a-z-]+)\*\(1\)", page.split("# SEE ALSO")[1])
+            self.assertTrue(related and set(related) <= set(self.verbs()) - {verb}, verb)
 
     def test_the_page_of_the_daemon_has_every_option(self):
         page = pages("man", MAN + "/pursuitd.1.scd")
@@ -56,12 +73,26 @@ class Pages(common.Case):
         for option in options - {"config", "print-config", "version"}:
             self.assertRegex(page, rf"(?m)^\*--(\[no-\])?{option}\*")
 
-    def test_scdoc_takes_the_pages(self):
+    def test_nobody_complains_of_the_pages(self):
         if not shutil.which("scdoc"):
             self.skipTest("scdoc is not installed")
-        for name in ["pursuit.1.scd", "pursuitd.1.scd"]:
-            result = subprocess.run(["scdoc"], input=pages("man", f"{MAN}/{name}"), capture_output=True, text=True)
-            self.assertEqual((result.returncode, result.stderr), (0, ""))
+        sources = {name: pages("man", f"{MAN}/{name}.1.scd") for name in ("pursuit", "pursuitd")}
+        sources |= {f"pursuit-{verb}": pages("verb", MAN + "/verb.1.scd", verb) for verb in self.verbs()}
+        for name, source in sources.items():
+            path = self.path(name + ".1")
+            with open(path + ".scd", "w", encoding="utf-8") as out:
+                out.write(source)
+            made = subprocess.run([sys.executable, PAGES, "roff", "scdoc", path + ".scd"], capture_output=True, text=True)
+            self.assertEqual((made.returncode, made.stderr), (0, ""), name)
+            with open(path, "w", encoding="utf-8") as out:
+                out.write(made.stdout)
+            for judge in ["man", "--warnings", "-l", "-Tutf8", "-Z"], ["mandoc", "-Tlint"]:
+                if shutil.which(judge[0]):
+                    said = subprocess.run([*judge, path], capture_output=True, text=True,
+                                          env={**os.environ, "LC_ALL": "C.UTF-8"})
+                    self.assertEqual(said.stderr, "", name)
+                    self.assertNotIn("STYLE", said.stdout, name)
+                    self.assertNotIn("WARNING", said.stdout, name)
 
     def test_bash(self):
         self.assertIn("replay", self.complete("pursuit", "re"))
@@ -81,6 +112,29 @@ class Pages(common.Case):
                     file.write(text)
                 result = subprocess.run([shell, *arguments, self.path(shell)], capture_output=True, text=True)
                 self.assertEqual((result.returncode, result.stderr), (0, ""))
+
+    def test_zsh_loads_it(self):
+        if not shutil.which("zsh"):
+            self.skipTest("zsh is not installed")
+        with open(self.path("_pursuit"), "w") as file:
+            file.write(pages("zsh"))
+        script = f"fpath=({self.folder} $fpath); autoload -Uz compinit; compinit -u -D; autoload +X -Uz _pursuit; " \
+                 "print $_comps[pursuit] $_comps[pursuitd]"
+        result = subprocess.run(["zsh", "-f", "-c", script], capture_output=True, text=True)
+        self.assertEqual((result.stdout, result.stderr), ("_pursuit _pursuit\n", ""))
+
+    def test_fish_completes(self):
+        if not shutil.which("fish"):
+            self.skipTest("fish is not installed")
+        with open(self.path("pursuit.fish"), "w") as file:
+            file.write(pages("fish"))
+        environment = {**os.environ, "HOME": self.folder, "XDG_CONFIG_HOME": self.folder}
+        for words, expected in [("pursuit repl", "replay"), ("pursuit replay --pred", "--predict"),
+                                ("pursuit replay --blur eve", "everywhere"), ("pursuitd --log-level de", "debug")]:
+            script = f"source {self.path('pursuit.fish')}; complete -C '{words}'"
+            result = subprocess.run(["fish", "-N", "-c", script], capture_output=True, text=True, env=environment)
+            self.assertEqual(result.stderr, "")
+            self.assertIn(expected, [line.split("\t")[0] for line in result.stdout.splitlines()], words)
 
 
 if __name__ == "__main__":

@@ -51,6 +51,18 @@ class Settings(common.Case):
         self.assertEqual(self.get("blur"), "doubtful\n")
         self.assertIn("needs a restart", self.set("present=kms", status=1))
 
+    def test_undo(self):
+        self.set("method=grid", "cell=16")
+        self.set("--undo", "method")
+        self.assertEqual(self.get("method", "cell"), "method = hold\ncell = 16\n")
+        self.assertIn("was not asked for", self.set("--undo", "cell", "method", status=1))
+        self.assertEqual(self.get("cell"), "16\n")
+        self.assertIn("its NAME is enough", self.set("--undo", "cell=16", status=2))
+        changed = self.must("set", "--json", "cell=32", "--socket", self.socket).stdout
+        self.assertEqual(json.loads(changed), {"cell": "32"})
+        changed = self.must("set", "--json", "--undo", "cell", "--socket", self.socket).stdout
+        self.assertEqual(json.loads(changed), {"cell": "8"})
+
     def test_no_daemon(self):
         for verb in (["get"], ["set", "cell=8"]):
             self.assertIn("Start one: pursuitd", self.must(*verb, "--socket", self.path("none"), status=1).stderr)

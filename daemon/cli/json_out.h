@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* What --json prints: one object on standard output, and nothing else there. */
+#ifndef PURSUIT_CLI_JSON_OUT_H
+#define PURSUIT_CLI_JSON_OUT_H
+
+#include <jansson.h>
+
+/* Takes the object over; NULL is one that there was no memory for, or text that is no UTF-8. STATUS_DONE or _FAILED. */
+int json_out(const char *verb, json_t *object);
+
+#endif
