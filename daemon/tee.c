@@ -8,11 +8,16 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
+#include <unistd.h>
 
+#include "daemon/record/image.h"
+#include "daemon/record/pattern.h"
 #include "daemon/record/y4m.h"
 
 #define PICTURES 20u
 #define QUEUED 64u
+#define LAST_SECONDS 5
 
 struct tee_picture {
 	uint8_t *data;          /* packed */
@@ -23,11 +28,12 @@ struct tee_picture {
 struct tee {
 	struct tee_params params;
 	char path[512];
+	bool images; /* `path` is a pattern */
 	FILE *times;
 	pthread_t thread;
 	pthread_mutex_t lock; /* for all below but `video` */
 	pthread_cond_t wake;
-	bool stop, failed;
+	bool stop, failed, drop_said;
 	uint32_t width, height; /* of the first picture; 0: none yet */
 	struct tee_picture pictures[PICTURES];
 	struct {
@@ -41,10 +47,21 @@ struct tee {
 
 /* ---- the thread ---- */
 
-static int write_frame(struct tee *tee, const struct tee_picture *picture, const struct presenter_flip *flip,
-					   struct error *error)
+static int write_image(const struct tee *tee, const struct tee_picture *picture, struct error *error)
 {
-	static const char *const shown[] = {"picture", "standby", "kept"};
+	char name[PATTERN_MAX_PATH];
+	if (!pattern_name(tee->path, tee->written, name))
+		return error_set(error, -ENAMETOOLONG, "%s: the name of frame %" PRIu64 " is too long", tee->path,
+						 tee->written);
+	const int result =
+		image_write_png(name, picture->data, (size_t)tee->width * 4, tee->width, tee->height, false, error);
+	if (result < 0)
+		unlink(name); /* half an image is none */
+	return result;
+}
+
+static int write_video(struct tee *tee, const struct tee_picture *picture, struct error *error)
+{
 	const struct y4m_params params = {.path = tee->path,
 									  .width = tee->width,
 									  .height = tee->height,
@@ -55,7 +72,14 @@ static int write_frame(struct tee *tee, const struct tee_picture *picture, const
 		tee->video = y4m_create(&params, error);
 	if (!tee->video)
 		return -EIO;
-	const int result = y4m_frame(tee->video, picture->data, (size_t)tee->width * 4, error);
+	return y4m_frame(tee->video, picture->data, (size_t)tee->width * 4, error);
+}
+
+static int write_frame(struct tee *tee, const struct tee_picture *picture, const struct presenter_flip *flip,
+					   struct error *error)
+{
+	static const char *const shown[] = {"picture", "standby", "kept"};
+	const int result = tee->images ? write_image(tee, picture, error) : write_video(tee, picture, error);
 	if (result == 0)
 		fprintf(tee->times, "%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%s,%" PRIu64 ",%s\n", flip->vblank,
 				flip->sequence, flip->target_ns, flip->flip_ns, presenter_time_source_name(flip->time_source),
@@ -138,6 +162,7 @@ void tee_add(struct tee *tee, const struct presenter_image *image, uint64_t grou
 
 void tee_flip(struct tee *tee, const struct presenter_flip *flip)
 {
+	bool first_drop = false;
 	if (flip->serial == 0)
 		return;
 	pthread_mutex_lock(&tee->lock);
@@ -156,26 +181,41 @@ void tee_flip(struct tee *tee, const struct presenter_flip *flip)
 		pthread_cond_signal(&tee->wake);
 	} else {
 		tee->dropped++;
+		first_drop = !tee->failed && !tee->drop_said;
+		tee->drop_said |= first_drop;
 	}
 	pthread_mutex_unlock(&tee->lock);
+	if (first_drop)
+		log_warning(tee->params.log, "tee: %s does not keep up, frames are dropped from vblank %" PRIu64 " on",
+					tee->path, flip->vblank);
 }
 
 /* ---- life ---- */
 
+/* 0 or a negative errno with a sentence. */
+static int open_times(struct tee *tee, struct error *error)
+{
+	char times[sizeof(tee->path) + 16];
+	const char *slash = strrchr(tee->path, '/');
+	if (tee->images)
+		snprintf(times, sizeof(times), "%.*stimes.csv", slash ? (int)(slash + 1 - tee->path) : 0, tee->path);
+	else
+		snprintf(times, sizeof(times), "%s.csv", tee->path);
+	tee->times = fopen(times, "we");
+	return tee->times ? 0 : error_set(error, -errno, "tee: %s: %s", times, strerror(errno));
+}
+
 struct tee *tee_create(const struct tee_params *params, struct error *error)
 {
 	struct tee *tee = calloc(1, sizeof(*tee));
-	char times[sizeof(tee->path) + 8];
 	if (!tee) {
 		error_set(error, -ENOMEM, "tee: out of memory");
 		return NULL;
 	}
 	tee->params = *params;
 	snprintf(tee->path, sizeof(tee->path), "%s", params->path);
-	snprintf(times, sizeof(times), "%s.csv", tee->path);
-	tee->times = fopen(times, "we");
-	if (!tee->times) {
-		error_set(error, -errno, "tee: %s: %s", times, strerror(errno));
+	tee->images = strchr(tee->path, '%') != NULL;
+	if ((tee->images && pattern_check("tee", tee->path, error) < 0) || open_times(tee, error) < 0) {
 		free(tee);
 		return NULL;
 	}
@@ -206,6 +246,22 @@ static void close_files(struct tee *tee)
 			 tee->path, tee->dropped, tee->other_size);
 }
 
+/* False: the disk does not answer; the thread has its memory for ever. */
+static bool wait_for_thread(struct tee *tee)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_sec += LAST_SECONDS;
+	if (pthread_clockjoin_np(tee->thread, NULL, CLOCK_MONOTONIC, &until) == 0)
+		return true;
+	pthread_mutex_lock(&tee->lock);
+	log_error(tee->params.log,
+			  "tee: %s does not take what is written; given up after %" PRIu64 " frames, %" PRIu64 " dropped",
+			  tee->path, tee->written, tee->dropped + tee->count);
+	pthread_mutex_unlock(&tee->lock);
+	return false;
+}
+
 void tee_destroy(struct tee **tee)
 {
 	struct tee *self = *tee;
@@ -216,7 +272,8 @@ void tee_destroy(struct tee **tee)
 	self->stop = true;
 	pthread_cond_signal(&self->wake);
 	pthread_mutex_unlock(&self->lock);
-	pthread_join(self->thread, NULL);
+	if (!wait_for_thread(self))
+		return;
 	close_files(self);
 	for (uint32_t i = 0; i < PICTURES; i++)
 		free(self->pictures[i].data);

@@ -3,9 +3,10 @@
 
 /*
  * Records what is shown, whatever presents it: each displayed frame once a
- * vblank into a YUV4MPEG2 file, and beside it, in FILE.csv, which vblank it was
- * and when. A thread writes; where it does not keep up, frames are dropped and
- * counted, presentation never waits.
+ * vblank into a YUV4MPEG2 file, or into a PNG image each, numbered from 0, and
+ * beside them, one row a frame, which vblank it was and when. A thread writes;
+ * where it does not keep up, or the disk is full, frames are dropped and counted,
+ * presentation never waits.
  */
 #ifndef PURSUIT_TEE_H
 #define PURSUIT_TEE_H
@@ -17,7 +18,7 @@
 struct tee;
 
 struct tee_params {
-	const char *path;
+	const char *path; /* of the video; with a % a pattern like "out/%06d.png". Times: PATH.csv, or out/times.csv */
 	const struct log *log;
 	uint64_t refresh_numerator; /* of the video */
 	uint64_t refresh_denominator;
@@ -25,7 +26,10 @@ struct tee_params {
 
 /* Opens both files. NULL with a sentence. */
 struct tee *tee_create(const struct tee_params *params, struct error *error);
-/* Writes what is waiting, closes, says in the log what was written and what was not. NULL accepted. */
+/*
+ * Writes what is waiting, closes, says in the log what was written and what was not. A disk that does not answer is
+ * given up after five seconds. NULL accepted.
+ */
 void tee_destroy(struct tee **tee);
 
 /* The next two on one thread, that which draws: one copy of the picture. */

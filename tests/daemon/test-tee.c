@@ -5,8 +5,11 @@
 
 #include <inttypes.h>
 #include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "client/pursuit.h"
+#include "daemon/record/image.h"
 #include "tests/daemon/fixture.h"
 
 #define WIDTH 64u
@@ -108,12 +111,84 @@ static void test_records_what_is_shown(void)
 	CHECK_INT(read_times(times), frames);
 }
 
+/* Starts with this file, plays so many frames, ends. */
+static void play_into(const char *path, uint64_t frames)
+{
+	char option[192];
+	snprintf(option, sizeof(option), "--tee=%s", path);
+	const char *const arguments[] = {option, NULL};
+	fixture_start(&fixture, arguments);
+	play(frames);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+/* An image each, numbered without a gap, as many as there are rows of times. */
+static void test_images(void)
+{
+	char pattern[128], path[160], times[128];
+	uint64_t images = 0;
+	snprintf(pattern, sizeof(pattern), "%s/f_%%05d.png", fixture.folder);
+	snprintf(times, sizeof(times), "%s/times.csv", fixture.folder);
+	play_into(pattern, 20);
+	for (;; images++) {
+		struct image image;
+		struct error error;
+		snprintf(path, sizeof(path), "%s/f_%05u.png", fixture.folder, (unsigned)images);
+		if (access(path, F_OK) != 0)
+			break;
+		CHECK_INT(image_read(path, IMAGE_BGRA, 0, &image, &error), 0);
+		CHECK_INT(image.width, WIDTH);
+		CHECK_INT(image.height, HEIGHT);
+		CHECK(image.bgra[0] >= 100 && image.bgra[0] < 150 && image.bgra[0] == image.bgra[4 * WIDTH * HEIGHT - 2]);
+		image_finish(&image);
+	}
+	CHECK(images >= 20);
+	CHECK_INT(read_times(times), images);
+}
+
+/* What is written fails with ENOSPC: said once, frames are shown all the same, and what is not there is counted. */
+static void test_disk_full(void)
+{
+	char path[128], pattern[128];
+	snprintf(path, sizeof(path), "%s/full.y4m", fixture.folder);
+	CHECK_INT(symlink("/dev/full", path), 0);
+	play_into(path, 40);
+	CHECK(fixture_logged(&fixture, "No space left on device; nothing more is recorded"));
+
+	snprintf(pattern, sizeof(pattern), "%s/g_%%d.png", fixture.folder);
+	snprintf(path, sizeof(path), "%s/g_3.png", fixture.folder);
+	CHECK_INT(symlink("/dev/full", path), 0);
+	play_into(pattern, 40);
+	CHECK(fixture_logged(&fixture, "No space left on device; nothing more is recorded"));
+	CHECK(fixture_logged(&fixture, "tee: 3 frames in"));
+	CHECK(access(path, F_OK) != 0);
+}
+
+/* Or does not end at all: a pipe that nobody reads. */
+static void test_disk_that_hangs(void)
+{
+	char path[128];
+	snprintf(path, sizeof(path), "%s/pipe.y4m", fixture.folder);
+	CHECK_INT(mkfifo(path, 0600), 0);
+	play_into(path, 60);
+	CHECK(fixture_logged(&fixture, "pipe.y4m does not keep up, frames are dropped from vblank"));
+	CHECK(fixture_logged(&fixture, "pipe.y4m does not take what is written; given up after 0 frames"));
+}
+
 static void test_no_such_folder(void)
 {
 	const char *const arguments[] = {"--tee=/nowhere/shown.y4m", NULL};
 	fixture_spawn(&fixture, arguments);
 	CHECK_INT(fixture_join(&fixture), 1);
 	CHECK(fixture_logged(&fixture, "tee: /nowhere/shown.y4m.csv: No such file or directory"));
+	const char *const images[] = {"--tee=/nowhere/%d.png", NULL};
+	fixture_spawn(&fixture, images);
+	CHECK_INT(fixture_join(&fixture), 1);
+	CHECK(fixture_logged(&fixture, "tee: /nowhere/times.csv: No such file or directory"));
+	const char *const wrong[] = {"--tee=shown_%x.png", NULL};
+	fixture_spawn(&fixture, wrong);
+	CHECK_INT(fixture_join(&fixture), 1);
+	CHECK(fixture_logged(&fixture, "shown_%x.png"));
 }
 
 int main(int argc, char **argv)
@@ -121,6 +196,9 @@ int main(int argc, char **argv)
 	(void)argc;
 	fixture_init(&fixture, argv[1]);
 	RUN(test_records_what_is_shown);
+	RUN(test_images);
+	RUN(test_disk_full);
+	RUN(test_disk_that_hangs);
 	RUN(test_no_such_folder);
 	fixture_finish(&fixture);
 	return test_result();
