@@ -53,7 +53,7 @@ static int make_levels(struct engine *engine, struct error *error)
 {
 	const struct target *below = picture_of(engine, PICTURE_ORIGINAL);
 	int corners = load_tiles(engine, &engine->mesh.levels, error), result = corners;
-	for (uint32_t i = 0; i < engine->params.blur_level && result >= 0; i++) {
+	for (uint32_t i = 0; i < engine->params.blur_level && i < MAX_LEVELS && result >= 0; i++) {
 		struct target *level = &gl_of(engine)->levels[i];
 		result = target_resize(level, table_of(engine), (below->width + 1) / 2, (below->height + 1) / 2, error);
 		if (result == 0)
