@@ -199,7 +199,7 @@ int contact_write(const struct contact *contact, const char *title, const char *
 	for (size_t i = 0; i < bytes; i++)
 		sheet.data[i] = i % 4 == 3 ? 255 : 32;
 	draw(&sheet, contact, title);
-	int result = image_write_png(path, sheet.data, 4 * (size_t)sheet.width, sheet.width, sheet.height, false, error);
+	int result = image_write_png_small(path, sheet.data, sheet.width, sheet.height, false, error);
 	free(sheet.data);
 	return result;
 }

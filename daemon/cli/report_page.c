@@ -23,12 +23,11 @@ static void put_name(FILE *out, const struct report_variant *variant)
 	}
 }
 
-static bool put_file(const struct report *report, FILE *out, const char *folder, const char *name, const char *ending,
-					 const char *description, const char *attributes)
+static void put_plot(const struct report *report, FILE *out, const char *name, const char *description)
 {
 	char path[4200];
-	snprintf(path, sizeof(path), "%s/%s/%s%s", report->options.out, folder, name, ending);
-	return html_image(out, path, strcmp(ending, ".svg") == 0 ? "image/svg+xml" : "image/png", description, attributes);
+	snprintf(path, sizeof(path), "%s/plots/%s.svg", report->options.out, name);
+	html_image(out, path, "image/svg+xml", description, "");
 }
 
 /* ---- the beginning ---- */
@@ -91,8 +90,8 @@ static void put_overall(const struct report *report, FILE *out)
 		fputs("</tr>\n", out);
 	}
 	html_table_end(out);
-	put_file(report, out, "plots", "overall", ".svg", "error against run time", "");
-	put_file(report, out, "plots", "speed", ".svg", "error against speed", "");
+	put_plot(report, out, "overall", "error against run time");
+	put_plot(report, out, "speed", "error against speed");
 }
 
 /* Scene by method: the figure that the whole thing is about. */
@@ -140,7 +139,7 @@ static void put_seen(const struct report *report, FILE *out, const uint8_t *seen
 	char path[4200], attributes[96 + 2 * REPORT_NAME];
 	struct error error;
 	snprintf(path, sizeof(path), "%s/pictures/%s", report->options.out, name);
-	if (image_write_png(path, seen, 4 * (size_t)crop->width, crop->width, crop->height, false, &error) < 0) {
+	if (image_write_png_small(path, seen, crop->width, crop->height, false, &error) < 0) {
 		fprintf(stderr, "pursuit report: %s\n", error.text);
 		return;
 	}
@@ -196,14 +195,16 @@ static void put_work(const struct report *report, FILE *out, uint32_t index)
 			"moments between, so there is no pursuit camera.</p>\n",
 			out);
 	report_plot_name(name, "error", report, index);
-	put_file(report, out, "plots", name, ".svg", "error against run time", "");
+	put_plot(report, out, name, "error against run time");
 	report_plot_name(name, "time", report, index);
-	put_file(report, out, "plots", name, ".svg", "error over time", "");
+	put_plot(report, out, name, "error over time");
 	put_camera(report, out, index);
 	if (*gallery->contact && (work->recording || work->n == report->works[0].n)) {
-		fputs("<details><summary>Contact sheet: the last scored in-between of each method, enlarged</summary>\n", out);
-		put_file(report, out, "pictures", gallery->contact, "", "contact sheet", "");
-		fputs("</details>\n", out);
+		fputs(
+			"<p class=\"note\">All methods on one sheet, the last scored in-between of each, enlarged: <code>pictures/",
+			out);
+		html_text(out, gallery->contact);
+		fputs("</code>, beside this page.</p>\n", out);
 	}
 }
 
