@@ -94,8 +94,9 @@ struct engine_params {
 	float viewing_distance_mm;  /* 0: 600 */
 	enum engine_curve curve;    /* transfer of the display */
 	float gamma;                /* 1 to 5, with ENGINE_CURVE_GAMMA */
-	bool finish_each_pass;      /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
-	bool query_software;        /* timer queries of a CPU renderer too, though they tell little; for tests */
+	bool leave_nothing_out; /* all triangles, depths and layers, needed or not; to measure what leaving out is worth */
+	bool finish_each_pass;  /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
+	bool query_software;    /* timer queries of a CPU renderer too, though they tell little; for tests */
 };
 
 enum engine_show {

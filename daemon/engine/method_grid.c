@@ -40,8 +40,9 @@ static int make_mesh(struct engine *engine, double phase, struct error *error)
 	if (engine->bend.bent)
 		bend_apply(&engine->bend, &engine->plan, phase);
 	engine->has_depth = depth_varies(&engine->plan);
+	engine->mesh.test_all = engine->params.leave_nothing_out;
 	/* Merging changes the drawing order. */
-	bool merge = engine->has_depth || !engine->plan.folded;
+	bool merge = (engine->has_depth || !engine->plan.folded) && !engine->params.leave_nothing_out;
 	return warp_mesh_begin(&engine->mesh, &engine->plan, merge ? engine->method->tolerance : -1.0f,
 						   engine->executor->pool, error);
 }
@@ -57,7 +58,7 @@ int grid_begin(struct engine *engine, struct error *error)
 		return 0;
 	}
 	note_plan(engine);
-	engine->levels_everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
+	engine->levels_everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE || engine->params.leave_nothing_out;
 	engine->boost = method_boost(engine);
 	result = make_mesh(engine, engine->last_phase, error);
 	if (result == 0)

@@ -26,7 +26,8 @@ static const char *why_no_blur(const struct engine *engine)
 {
 	if (engine->params.blur == ENGINE_BLUR_OFF)
 		return "off";
-	if (engine->params.blur == ENGINE_BLUR_DOUBTFUL && !engine->mesh.doubtful.count)
+	if (engine->params.blur == ENGINE_BLUR_DOUBTFUL && !engine->mesh.doubtful.count &&
+		!engine->params.leave_nothing_out)
 		return "no-distortion";
 	if (engine->params.no_compensation)
 		return NULL;

@@ -56,6 +56,7 @@ struct warp_mesh {
 	struct warp_list torn;        /* torn, not over each other */
 	struct warp_list folded;      /* perhaps over each other, in drawing order */
 	struct warp_list folded_torn; /* these among them that are torn; if `keep_order` they are in `folded` too */
+	bool test_all; /* set by the caller: sorts take all triangles for such that may lie over each other */
 	bool keep_order;
 	bool too_wild; /* drawing would cost too much; the lists are not filled */
 	struct warp_list doubtful;

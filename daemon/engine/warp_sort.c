@@ -239,6 +239,8 @@ int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_or
 	mesh->too_wild = is_too_wild(mesh);
 	if (mesh->too_wild)
 		return 0;
+	if (mesh->test_all)
+		tiles_mark_all(&mesh->folds);
 	tiles_sum(&mesh->folds);
 	pool_run(mesh->pool, find_folds, &sort, warp_items(mesh));
 	make_lists(mesh);

@@ -114,10 +114,11 @@ struct bench_times bench_time(struct engine *engine, const struct frame *frames,
 struct engine *bench_engine(const char *context, const char *method)
 {
 	static const char *const names[] = {"auto", "surfaceless", "device", "osmesa", "cpu"};
-	struct engine_params params = {.method = method};
+	const bool all = strncmp(context, "all-", 4) == 0;
+	struct engine_params params = {.method = method, .leave_nothing_out = all};
 	struct error error;
 	for (uint32_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
-		if (strcmp(names[i], context) == 0)
+		if (strcmp(names[i], context + (all ? 4 : 0)) == 0)
 			params.context = (enum engine_context_kind)i;
 	struct engine *engine = engine_create(&params, &error);
 	if (!engine)

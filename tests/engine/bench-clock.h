@@ -23,7 +23,8 @@ struct bench_times {
 struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n,
 							  bool unchanged);
 
-/* "auto", "surfaceless", "osmesa", "cpu", ...; an engine of that kind, or the end of the program. */
+/* "auto", "surfaceless", "osmesa", "cpu", ..., with "all-" before it one that leaves nothing out; an engine of that
+ * kind, or the end of the program. */
 struct engine *bench_engine(const char *context, const char *method);
 
 /* Memory of the process, MB: the most so far. */

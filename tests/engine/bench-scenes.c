@@ -5,7 +5,8 @@
  * Milliseconds of the engine for a real frame with its in-betweens, on every scene, at the sizes and rates that the
  * project has set itself goals for. The least of the frames is what a machine with nothing else to do would show.
  *
- *   bench-scenes [CONTEXT [METHOD [WIDTHxHEIGHT]]]    CONTEXT: auto, cpu, surfaceless, osmesa
+ *   bench-scenes [CONTEXT [METHOD [WIDTHxHEIGHT]]]    CONTEXT: auto, cpu, surfaceless, osmesa, all-cpu: nothing left
+ *                                                     out, ...
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -18,7 +18,7 @@ static int run(struct engine *engine, struct error *error)
 	int result = cpu_shown(engine, &shown, error);
 	scene->mesh = &engine->mesh;
 	scene->phase = (float)engine->job.phase;
-	scene->tolerance = engine->mesh.tolerance;
+	scene->tolerance = engine->params.leave_nothing_out ? -1.0f : engine->mesh.tolerance;
 	scene->width = engine->width;
 	scene->height = engine->height;
 	if (result == 0)

@@ -34,7 +34,7 @@ struct scene {
 	/* The mesh at the phase, and how it is drawn. */
 	const struct warp_mesh *mesh;
 	float phase;
-	float tolerance;    /* pixels of displacement that do not show */
+	float tolerance;    /* pixels of displacement that do not show; negative: all do */
 	const float *x, *y; /* displaced vertices, pixels */
 	float *positions;   /* where they lie */
 	size_t position_bytes;
