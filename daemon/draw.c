@@ -15,87 +15,8 @@
 /* Of the picture before the first frame. */
 #define EMPTY_WIDTH 960u
 #define EMPTY_HEIGHT 540u
-#define ENGINE_FIRST_DELAY (100 * MS)
-#define ENGINE_LAST_DELAY (5000 * MS)
 
-/* ---- the engine ---- */
-
-static int get_params(const struct render *render, struct engine_params *params, struct error *error)
-{
-	const int result = settings_engine_params(render->settings, params, error);
-	/* Where real frames are as fast as the display there is nothing between them. */
-	governor_apply(render->passes_through ? GOVERNOR_LEVELS - 1 : render->governor.level, params);
-	return result;
-}
-
-int draw_make_engine(struct render *render, struct error *error)
-{
-	struct engine_params params;
-	const int result = get_params(render, &params, error);
-	if (result < 0)
-		return result;
-	params.brought = render->context && !render->context_shunned ? &render->brought : NULL;
-	render->engine = engine_create(&params, error);
-	if (!render->engine)
-		return -EIO;
-	const struct engine_info *info = engine_get_info(render->engine);
-	if (info->brought)
-		log_info(render->log, "pictures stay in GL, in the context of the %s", info->context);
-	render->owner.engine_made(render->owner.data, info);
-	return 0;
-}
-
-void draw_follow_context(struct render *render)
-{
-	const struct presenter_impl *impl = render->presenter ? render->presenter->impl : NULL;
-	const struct presenter_context *context = impl && impl->get_context ? impl->get_context(render->presenter) : NULL;
-	if (context == render->context)
-		return;
-	/* One in a context that goes, or that could have been in the one that comes. */
-	if (render->engine && (context || engine_get_info(render->engine)->brought)) {
-		engine_destroy(&render->engine);
-		render->engine_retry_ns = render->engine_delay_ns = 0;
-	}
-	render->begun = false;
-	render->context = context;
-	render->context_shunned = false;
-	if (context)
-		render->brought = (struct engine_context){.name = context->name,
-												  .enter = context->enter,
-												  .release = context->release,
-												  .find = context->find,
-												  .data = context->data};
-}
-
-static void lose_engine(struct render *render, const char *why)
-{
-	/* What was lost may be the context itself; it comes back only with its presenter. */
-	render->context_shunned |= render->engine && engine_get_info(render->engine)->brought;
-	engine_destroy(&render->engine);
-	render->begun = false;
-	render->engine_delay_ns = render->engine_delay_ns ? render->engine_delay_ns * 2 : ENGINE_FIRST_DELAY;
-	if (render->engine_delay_ns > ENGINE_LAST_DELAY)
-		render->engine_delay_ns = ENGINE_LAST_DELAY;
-	render->engine_retry_ns = clock_now(render->clock) + render->engine_delay_ns;
-	render->stats->engine_losses++;
-	log_warning(render->log, "the engine is lost, to be made anew in %u ms: %s",
-				(unsigned)(render->engine_delay_ns / MS), why);
-}
-
-bool draw_revive_engine(struct render *render, uint64_t now_ns)
-{
-	struct error error;
-	if (render->engine)
-		return true;
-	if (now_ns < render->engine_retry_ns)
-		return false;
-	if (draw_make_engine(render, &error) < 0) {
-		lose_engine(render, error.text);
-		return false;
-	}
-	log_info(render->log, "the engine is back");
-	return true;
-}
+/* ---- pictures ---- */
 
 /* Unless the CPU is to draw on it, or to look at it. */
 static bool stays_in_gl(const struct render *render)
@@ -118,6 +39,26 @@ static int acquire(struct render *render, struct presenter_image *image)
 	return result;
 }
 
+/* Nobody has taken a newer one, and its memory is there. */
+static bool frame_is_held(const struct render *render)
+{
+	struct frame held;
+	return render->stream && !atomic_load(&render->stream->ended) && render->stream->number == render->stream_number &&
+		   stream_get_held(render->stream, &held) && held.header.frame_id == render->frame.header.frame_id;
+}
+
+/* The engine is lost: the frame that it was at goes to the one that stands in. Has that got it? */
+static bool draw_with_another(struct render *render, int result, const struct error *why)
+{
+	struct error error;
+	const bool held = render->begun && frame_is_held(render);
+	draw_lose_engine(render, result, why->text);
+	if (!held || !render->engine)
+		return false;
+	render->begun = render->report_due = engine_begin(render->engine, &render->frame, &render->begun_with, &error) == 0;
+	return render->begun;
+}
+
 /* A picture from the engine into the presenter's memory. */
 static int draw(struct render *render, enum engine_show show, double phase, struct presenter_image *image)
 {
@@ -132,15 +73,15 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 		.data = image->data, .stride = image->stride, .holds = image->holds, .texture = image->texture};
 	result = engine_render(render->engine, &request, &target, &error);
 	image->holds = result == 0 ? target.holds : 0;
-	if (result == 0)
+	if (result == 0) {
 		view_draw(render, image);
-	if (result < 0) {
-		presenter->impl->release(presenter, image);
-		if (result == -EIO)
-			lose_engine(render, error.text);
-		else
-			log_warning(render->log, "%s", error.text);
+		return 0;
 	}
+	presenter->impl->release(presenter, image);
+	if (!draw_is_lost(render, result))
+		log_warning(render->log, "%s", error.text);
+	else if (draw_with_another(render, result, &error))
+		return draw(render, show, phase, image);
 	return result;
 }
 
@@ -248,15 +189,19 @@ static uint32_t boost_over(const struct render *render, const struct pacer_decis
 
 static bool begin(struct render *render, const struct pacer_decision *decision)
 {
-	const struct engine_begin_params params = {.n = boost_over(render, decision),
-											   .last_phase = decision->last_phase,
-											   .real_interval_ns = decision->interval_ns};
 	struct error error;
-	const int result = engine_begin(render->engine, &render->frame, &params, &error);
+	render->begun_with = (struct engine_begin_params){.n = boost_over(render, decision),
+													  .last_phase = decision->last_phase,
+													  .real_interval_ns = decision->interval_ns};
+	int result = engine_begin(render->engine, &render->frame, &render->begun_with, &error);
+	if (draw_is_lost(render, result)) {
+		draw_lose_engine(render, result, error.text);
+		if (!render->engine)
+			return false;
+		result = engine_begin(render->engine, &render->frame, &render->begun_with, &error);
+	}
 	render->begun = render->report_due = result == 0;
-	if (result == -EIO) {
-		lose_engine(render, error.text);
-	} else if (result < 0) {
+	if (result < 0) {
 		struct refusal refusal;
 		struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
 		if (frame)
@@ -335,7 +280,7 @@ static void set_params(struct render *render)
 {
 	struct engine_params params;
 	struct error error;
-	int result = get_params(render, &params, &error);
+	int result = draw_get_params(render, &params, &error);
 	if (result == 0 && render->engine)
 		result = engine_set_params(render->engine, &params, &error);
 	if (result < 0)
@@ -396,6 +341,7 @@ void draw_real(struct render *render, uint64_t now_ns)
 		render->take_again_ns = grid_time(&render->grid, grid_at_or_after(&render->grid, now_ns + 1));
 		return;
 	}
+	draw_replace_stand_in(render, now_ns);
 	uint64_t vblank = grid_at_or_after(&render->grid, now_ns + render_real_cost(render));
 	if (vblank <= render->real_vblank)
 		vblank = render->real_vblank + 1;
@@ -416,7 +362,6 @@ void draw_real(struct render *render, uint64_t now_ns)
 		give_up(render);
 		return;
 	}
-	render->engine_delay_ns = 0;
 	settle_real(render, &decision, vblank);
 }
 

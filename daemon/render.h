@@ -45,11 +45,13 @@ struct render {
 	const struct log *log;
 	struct render_owner owner;
 	struct engine *engine;
+	bool stand_in;                             /* it is one on the CPU, in place of one that was lost */
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
-	struct presenter *presenter;               /* the display's; NULL: lost */
-	const struct presenter_context *context;   /* that it offers to draw in; NULL: none */
-	struct engine_context brought;             /* the same, as the engine wants it */
-	bool context_shunned;                      /* an engine was lost in it */
+	uint64_t engine_made_ns;
+	struct presenter *presenter;             /* the display's; NULL: lost */
+	const struct presenter_context *context; /* that it offers to draw in; NULL: none */
+	struct engine_context brought;           /* the same, as the engine wants it */
+	bool context_shunned;                    /* an engine was lost in it */
 	struct grid grid;
 	uint64_t lead_ns; /* that the presenter wants pictures before their vblank */
 	struct pacer pacer;
@@ -63,7 +65,8 @@ struct render {
 	struct stats *stats;   /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
 
-	struct frame frame;     /* begun last */
+	struct frame frame; /* begun last */
+	struct engine_begin_params begun_with;
 	uint64_t take_again_ns; /* after a refused frame: one look a vblank is enough for a client that sends nonsense */
 	uint64_t hold_until_ns; /* a frame that came too early for a vblank of its own is not begun before */
 	bool begun;             /* the engine has it */
@@ -152,11 +155,25 @@ void draw_plain(struct render *render, uint64_t vblank);
 void draw_empty(struct render *render, uint64_t vblank);
 /* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
 void draw_count_report(struct render *render);
+
+/* ---- draw_engine.c ---- */
+
+/* The engine's settings, at the governor's level. 0 or -errno with a sentence. */
+int draw_get_params(const struct render *render, struct engine_params *params, struct error *error);
 /* The engine's context is to be that which the presenter offers, if any: one that cannot go on is destroyed. */
 void draw_follow_context(struct render *render);
 /* Makes the engine. 0 or -errno with a sentence. */
 int draw_make_engine(struct render *render, struct error *error);
-/* Makes a lost engine anew when its time has come. Is there one? */
+/* Does what engine_begin() or engine_render() gave mean that the engine is of no more use? */
+bool draw_is_lost(const struct render *render, int result);
+/*
+ * Destroys it and puts one on the CPU in its place, which has no frame yet; NULL if not even that can be made. The real
+ * one is tried again after 100 ms, then 200, up to a minute if it does not last.
+ */
+void draw_lose_engine(struct render *render, int result, const char *why);
+/* Makes a lost engine anew, if there is none at all, when its time has come. Is there one? */
 bool draw_revive_engine(struct render *render, uint64_t now_ns);
+/* Before a frame is begun: the real engine again in place of the one that stands in, when its time has come. */
+void draw_replace_stand_in(struct render *render, uint64_t now_ns);
 
 #endif

@@ -3,10 +3,10 @@
 
 /*
  * Things that end in the middle: the daemon by kill -9 under a running game,
- * clients at any instruction, a client that stands still, the GL context. What
+ * clients at any instruction, a client that stands still. What
  * is left goes on. Times are told, not judged, but for the coarsest.
  *
- *   test-recovery PURSUITD PRELOAD [KILLS]
+ *   test-recovery PURSUITD [KILLS]
  */
 
 #include <errno.h>
@@ -29,7 +29,6 @@
 #define MOST_STEPS 4000u
 
 static struct fixture fixture;
-static const char *preload;
 static unsigned kills = 40;
 
 /* ---- a game ---- */
@@ -286,59 +285,16 @@ static void test_client_stopped(void)
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }
 
-/* ---- GL ---- */
-
-static void lose_context(const char *path)
-{
-	const int fd = open(path, O_CREAT | O_WRONLY | O_CLOEXEC, 0600);
-	CHECK(fd >= 0);
-	close(fd);
-	for (int waited = 0; waited < 20000 && access(path, F_OK) == 0; waited += 5)
-		sleep_ms(5);
-	CHECK(access(path, F_OK) != 0); /* GL was asked, and has told */
-}
-
-/* The engine is made anew, later and later, and the clients stay. */
-static void test_context_lost(void)
-{
-	char path[96];
-	snprintf(path, sizeof(path), "%s/lose", fixture.folder);
-	setenv("PURSUIT_TEST_LOSE", path, 1);
-	setenv("LD_PRELOAD", preload, 1);
-	const char *const arguments[] = {"--context", "egl", "--method", "pursuit", NULL};
-	fixture_spawn(&fixture, arguments);
-	unsetenv("LD_PRELOAD");
-	if (!fixture_wait(&fixture)) {
-		printf("       no EGL, or no preloading: not tried\n");
-		fixture_join(&fixture);
-		return;
-	}
-	start_neighbour();
-	wait_for_reports(3);
-	for (int i = 0; i < 3; i++) {
-		lose_context(path);
-		wait_for_reports(5);
-	}
-	CHECK(fixture_logged(&fixture, "the engine is lost, to be made anew in 100 ms"));
-	CHECK(fixture_logged(&fixture, "the engine is back"));
-	CHECK_INT(status_figure("streams", true), 1);
-	CHECK(status_figure("engine_losses", false) >= 3);
-	stop_neighbour();
-	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
-}
-
 int main(int argc, char **argv)
 {
-	if (argc < 3)
+	if (argc < 2)
 		return 2;
-	preload = argv[2];
-	kills = argc > 3 ? (unsigned)atoi(argv[3]) : kills;
+	kills = argc > 2 ? (unsigned)atoi(argv[2]) : kills;
 	signal(SIGPIPE, SIG_IGN);
 	fixture_init(&fixture, argv[1]);
 	RUN(test_daemon_killed);
 	RUN(test_clients_killed);
 	RUN(test_client_stopped);
-	RUN(test_context_lost);
 	fixture_finish(&fixture);
 	return test_result();
 }
