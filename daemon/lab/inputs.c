@@ -3,7 +3,7 @@
 
 #include "daemon/lab/state.h"
 
-#define READ_MOST 16u
+#define READ_MOST 16
 /* Flip events may come so much later than the edges that they cause. */
 #define HOLD_NS UINT64_C(40000000)
 
@@ -79,9 +79,13 @@ static void read_line(struct lab *lab, struct lines *lines, uint64_t now_ns,
 {
 	struct chip_edge edges[READ_MOST];
 	int count = 0;
-	while (lines->chip && (count = chip_read(lines->chip, edges, READ_MOST)) > 0)
+	if (!lines->chip || !lines->readable)
+		return;
+	do {
+		count = chip_read(lines->chip, edges, READ_MOST);
 		for (int i = 0; i < count; i++)
 			take(lab, &edges[i]);
+	} while (count == READ_MOST);
 	if (count < 0)
 		lines_lose(lines, count, now_ns);
 }

@@ -21,6 +21,7 @@ struct lines {
 	const struct log *log;
 	bool wanted;
 	struct chip *chip; /* NULL: not there now */
+	bool readable;     /* of an input: its descriptor has something */
 	uint64_t retry_ns, delay_ns;
 	uint64_t check_ns; /* when a quiet input is looked after next */
 	uint64_t failures; /* times that they were lost or could not be had */

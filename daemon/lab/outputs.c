@@ -73,9 +73,8 @@ static void set_strobe(struct lab *lab, bool on)
 		lines_lose(&lab->strobe_lines, result, clock_now(lab->params.clock));
 }
 
-static void work_strobe(struct lab *lab)
+static void work_strobe(struct lab *lab, uint64_t now_ns)
 {
-	uint64_t now_ns = clock_now(lab->params.clock);
 	if (now_ns >= lab->strobe_off_ns) {
 		set_strobe(lab, false);
 		strobe_end(&lab->strobe, clock_now(lab->params.clock));
@@ -106,7 +105,8 @@ static void note_edge(struct lab *lab, uint64_t vblank, uint64_t before_ns, uint
 	row->points.edge_lost = after_ns == 0;
 }
 
-static void apply(struct lab *lab, const struct pattern_change *change)
+/* Gives the time after it back. */
+static uint64_t apply(struct lab *lab, const struct pattern_change *change)
 {
 	const uint64_t before_ns = clock_now(lab->params.clock);
 	lab->levels = (lab->levels & ~change->mask) | change->levels;
@@ -125,6 +125,7 @@ static void apply(struct lab *lab, const struct pattern_change *change)
 			.time_ns = after_ns + change->pulse_ns, .vblank = UINT64_MAX, .mask = change->mask};
 		schedule_add(&lab->schedule, &end);
 	}
+	return after_ns;
 }
 
 static void revive(struct lab *lab, uint64_t now_ns)
@@ -134,15 +135,15 @@ static void revive(struct lab *lab, uint64_t now_ns)
 	lines_revive(&lab->strobe_lines, now_ns);
 }
 
-void outputs_work(struct lab *lab)
+void outputs_work(struct lab *lab, uint64_t now_ns)
 {
 	struct pattern_change change;
-	work_strobe(lab);
-	while (schedule_take(&lab->schedule, clock_now(lab->params.clock), &change)) {
-		apply(lab, &change);
-		work_strobe(lab);
+	work_strobe(lab, now_ns);
+	while (schedule_take(&lab->schedule, now_ns, &change)) {
+		now_ns = apply(lab, &change);
+		work_strobe(lab, now_ns);
 	}
-	revive(lab, clock_now(lab->params.clock));
+	revive(lab, now_ns);
 }
 
 static uint64_t earlier(uint64_t a, uint64_t b)

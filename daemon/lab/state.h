@@ -65,6 +65,7 @@ struct lab {
 	struct rows rows;
 	double period_ns;
 	uint64_t last_vblank, last_target_ns;
+	bool woken; /* the eventfd has something to be read */
 };
 
 /* ---- thread.c ---- */
@@ -76,8 +77,8 @@ void *lab_run(void *lab);
 void outputs_init(struct lab *lab);
 /* A flip: plans the marker's change and the strobe's pulse. Does the marker get an edge? */
 bool outputs_flip(struct lab *lab, const struct pattern_flip *flip);
-/* Does what is due now. */
-void outputs_work(struct lab *lab);
+/* Does what is due now; each reading of the clock is a call that an edge may wait for. */
+void outputs_work(struct lab *lab, uint64_t now_ns);
 /* When outputs_work() has something to do. */
 uint64_t outputs_next(const struct lab *lab);
 /* Safe and final levels. */
@@ -88,7 +89,7 @@ void outputs_finish(struct lab *lab);
 void inputs_init(struct lab *lab);
 /* A flip that changes the patch (or nothing is known about its light); the row waits for the light. */
 void inputs_flip(struct lab *lab, struct row *row, bool changed);
-/* Reads edges, matches them, keeps lines alive. */
+/* Reads edges of lines that have some (`readable`), matches them, keeps lines alive. */
 void inputs_work(struct lab *lab, uint64_t now_ns);
 uint64_t inputs_next(const struct lab *lab);
 void inputs_finish(struct lab *lab);

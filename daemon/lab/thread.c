@@ -92,7 +92,7 @@ static struct row *add_row(struct lab *lab, const struct presenter_flip *flip, u
 	return row;
 }
 
-static void handle_flip(struct lab *lab, const struct presenter_flip *flip, uint64_t event_ns)
+static void handle_flip(struct lab *lab, const struct presenter_flip *flip, uint64_t event_ns, uint64_t now_ns)
 {
 	const bool level_before = lab->front_level;
 	learn_period(lab, flip);
@@ -102,11 +102,11 @@ static void handle_flip(struct lab *lab, const struct presenter_flip *flip, uint
 	struct row *row = add_row(lab, flip, event_ns, show);
 	row->edge_open = edge;
 	row->points.time[POINT_EDGE] = edge ? POINT_NOT_YET : POINT_UNKNOWN;
-	outputs_work(lab);
+	outputs_work(lab, now_ns);
 	inputs_flip(lab, row, lab->front_level != level_before);
 }
 
-static void read_flips(struct lab *lab)
+static void read_flips(struct lab *lab, uint64_t now_ns)
 {
 	const struct queue_message *message;
 	while ((message = queue_front(&lab->flips))) {
@@ -115,7 +115,7 @@ static void read_flips(struct lab *lab)
 		read_render(lab);
 		if (flip.flip.vblank < lab->last_vblank)
 			forget_unseen(lab);
-		handle_flip(lab, &flip.flip, flip.event_ns);
+		handle_flip(lab, &flip.flip, flip.event_ns, now_ns > flip.event_ns ? now_ns : flip.event_ns);
 	}
 	read_render(lab);
 }
@@ -186,20 +186,35 @@ static int fd_of(const struct lines *lines)
 	return lines->chip ? chip_fd(lines->chip) : -1;
 }
 
+/* The wake-up is taken back only now: the line came first. Who woke us before that has left a message. */
+static bool has_more(struct lab *lab)
+{
+	uint64_t count;
+	if (lab->woken && read(lab->wake_fd, &count, sizeof(count)) < 0)
+		log_debug(lab->params.log, "lab: eventfd: %s", strerror(errno));
+	lab->woken = false;
+	return queue_front(&lab->flips) || atomic_load(&lab->stop);
+}
+
 static void wait_for_work(struct lab *lab)
 {
-	struct pollfd fds[4] = {{.fd = lab->wake_fd, .events = POLLIN},
-							{.fd = fd_of(&lab->photodiode), .events = POLLIN},
-							{.fd = fd_of(&lab->trigger), .events = POLLIN},
-							{.fd = fd_of(&lab->vsync_lines), .events = POLLIN}};
+	struct lines *const inputs[] = {&lab->photodiode, &lab->trigger, &lab->vsync_lines};
+	struct pollfd fds[4] = {{.fd = lab->wake_fd, .events = POLLIN}};
+	for (int i = 0; i < 3; i++) {
+		fds[1 + i] = (struct pollfd){.fd = fd_of(inputs[i]), .events = POLLIN};
+		inputs[i]->readable = false;
+	}
+	if (has_more(lab))
+		return;
 	const uint64_t next_ns = next_time(lab), now_ns = clock_now(lab->params.clock);
 	const uint64_t span = next_ns > now_ns ? next_ns - now_ns : 0;
 	const struct timespec timeout = {(time_t)(span / UINT64_C(1000000000)), (long)(span % UINT64_C(1000000000))};
-	uint64_t count;
-	if (ppoll(fds, 4, next_ns == LAB_NEVER ? NULL : &timeout, NULL) < 0 && errno != EINTR)
+	const int ready = ppoll(fds, 4, next_ns == LAB_NEVER ? NULL : &timeout, NULL);
+	if (ready < 0 && errno != EINTR)
 		log_error(lab->params.log, "lab: poll: %s", strerror(errno));
-	if ((fds[0].revents & POLLIN) && read(lab->wake_fd, &count, sizeof(count)) < 0)
-		log_debug(lab->params.log, "lab: eventfd: %s", strerror(errno));
+	lab->woken = ready > 0 && fds[0].revents;
+	for (int i = 0; i < 3; i++)
+		inputs[i]->readable = ready > 0 && fds[1 + i].revents;
 }
 
 static void raise_priority(struct lab *lab)
@@ -222,17 +237,19 @@ void *lab_run(void *data)
 	pthread_setname_np(pthread_self(), "pursuit-lab");
 	raise_priority(lab);
 	while (!atomic_load(&lab->stop)) {
-		outputs_work(lab);
-		read_flips(lab);
-		inputs_work(lab, clock_now(lab->params.clock));
-		outputs_work(lab);
-		publish_settled(lab, clock_now(lab->params.clock), false);
+		const uint64_t now_ns = clock_now(lab->params.clock);
+		outputs_work(lab, now_ns);
+		read_flips(lab, now_ns);
+		inputs_work(lab, now_ns);
+		publish_settled(lab, now_ns, false);
 		wait_for_work(lab);
 	}
-	read_flips(lab);
+	const uint64_t end_ns = clock_now(lab->params.clock);
+	lab->photodiode.readable = lab->trigger.readable = true;
+	read_flips(lab, end_ns);
 	outputs_finish(lab);
-	inputs_work(lab, clock_now(lab->params.clock));
+	inputs_work(lab, end_ns);
 	inputs_finish(lab);
-	publish_settled(lab, clock_now(lab->params.clock), true);
+	publish_settled(lab, end_ns, true);
 	return NULL;
 }

@@ -7,96 +7,18 @@ import csv
 import glob
 import json
 import os
-import re
+import random
 import subprocess
 import sys
 import time
 
+from rig_kernel import (HOG, PERIOD_US, TRACE, VALUE, check, check_at_vblanks, check_steady, chip_base, edges_of, failures,
+                        make_chip, of_line, plug, read, trace_read, trace_start, write)
+
 RIG_LAB, PRESENTER = sys.argv[1], (sys.argv[3:] or ["headless"])[0]
-SIM = "/sys/kernel/config/gpio-sim/lab"
-TRACE = "/sys/kernel/tracing"
 TMP = os.environ["TMPDIR"]
-# the mode is for kms only
-DISPLAY = ["--present", PRESENTER, "--mode", "1024x768@120"]
-PERIOD_US = 1e6 / 120
-VALUE = re.compile(r"(\d+\.\d+): gpio_value: (\d+) set (\d)")
-VBLANK = re.compile(r"(\d+\.\d+): drm_vblank_event(?:_delivered)?: ")
-LINES = 28
-# offset: name, and lines that the kernel itself holds
-NAMES = {17: "MARKER", 18: "REAL", 19: "BETWEEN", 4: "PHOTODIODE", 5: "TRIGGER", 6: "STROBE", 7: "VSYNC"}
-HOG = 27
-
-failures = []
-
-
-def check(true, *words):
-    if not true:
-        failures.append(" ".join(map(str, words)))
-        print("FAILED:", *words, flush=True)
-
-
-def write(path, text):
-    with open(path, "w") as out:
-        out.write(text)
-
-
-def read(path):
-    with open(path) as source:
-        return source.read()
-
-
-def make_chip():
-    """A chip with named lines; gives its folder in sysfs back."""
-    os.makedirs(f"{SIM}/bank")
-    write(f"{SIM}/bank/num_lines", str(LINES))
-    write(f"{SIM}/bank/label", "lab-chip")
-    for offset, name in NAMES.items():
-        os.mkdir(f"{SIM}/bank/line{offset}")
-        write(f"{SIM}/bank/line{offset}/name", name)
-    os.makedirs(f"{SIM}/bank/line{HOG}/hog")
-    write(f"{SIM}/bank/line{HOG}/hog/name", "someone-else")
-    write(f"{SIM}/bank/line{HOG}/hog/direction", "input")
-    plug(True)
-    folder = f"/sys/devices/platform/{read(SIM + '/dev_name').strip()}/{read(SIM + '/bank/chip_name').strip()}"
-    if not glob.glob("/dev/gpiochip*"):
-        sys.exit("no /dev/gpiochip*")
-    return folder
-
-
-def plug(there):
-    write(f"{SIM}/live", "1" if there else "0")
-
-
-def trace_start():
-    write(f"{TRACE}/trace_clock", "mono")
-    write(f"{TRACE}/buffer_size_kb", "24000")
-    write(f"{TRACE}/trace", "")
-    write(f"{TRACE}/events/gpio/gpio_value/enable", "1")
-    if PRESENTER == "kms":
-        write(f"{TRACE}/events/drm/drm_vblank_event/enable", "1")
-
-
-def trace_read(base):
-    """(edges [(us, offset, level)], vblanks [us]); only real changes of level count as edges."""
-    edges, vblanks, levels = [], [], {}
-    with open(f"{TRACE}/trace") as source:
-        for line in source:
-            value = VALUE.search(line)
-            if value:
-                offset, level = int(value.group(2)) - base, int(value.group(3))
-                if levels.get(offset, 0) != level:
-                    edges.append((float(value.group(1)) * 1e6, offset, level))
-                levels[offset] = level
-            elif VBLANK.search(line):
-                vblanks.append(float(VBLANK.search(line).group(1)) * 1e6)
-    return edges, vblanks
-
-
-def chip_base():
-    for folder in glob.glob("/sys/class/gpio/gpiochip*"):
-        if read(f"{folder}/label").strip() == "lab-chip":
-            return int(read(f"{folder}/base"))
-    return 0
+# The mode is for kms only: a small one, since the virtual display's controller is a program too.
+DISPLAY = ["--present", PRESENTER, "--mode", "160x120@120"]
 
 
 def run(*arguments, flips=240):
@@ -112,57 +34,78 @@ def run(*arguments, flips=240):
 
 
 def watched(*arguments, flips=240):
-    trace_start()
+    """Its status, edges of its lines and vblanks of its display, as the kernel saw them."""
+    trace_start(PRESENTER == "kms")
     status = run(*arguments, flips=flips)
-    edges, vblanks = trace_read(chip_base())
-    return status, edges, vblanks
-
-
-def of_line(edges, offset, level=None):
-    return [time_us for time_us, line, value in edges if line == offset and level in (None, value)]
-
-
-def check_steady(times, name, periods=1, count=None):
-    """As many as wanted, in order, none twice, each so many refreshes after the one before."""
-    if count is not None:
-        check(len(times) == count, name, "edges", len(times), "not", count)
-    steps = [b - a for a, b in zip(times, times[1:])]
-    odd = [step for step in steps if abs(step - periods * PERIOD_US) > 60]
-    check(not odd, name, len(odd), "of", len(steps), "steps are not", periods, "refreshes:", odd[:3])
+    sets, vblanks = trace_read()
+    status["sets"] = sets
+    return status, edges_of(sets), vblanks
 
 
 def check_patterns():
+    check_toggle()
+    check_pulses()
+    check_three_lines()
+    check_counter()
+    _, edges, vblanks = watched("--gpio-line", "MARKER", "--gpio-pattern", "sequence", "--gpio-active-low", flips=600)
+    check_sequence(edges, vblanks)
+
+
+def check_toggle():
     status, edges, vblanks = watched("--gpio-line", "MARKER")
     marks = of_line(edges, 17)
     check_steady(marks[:240], "toggle", 1, 240)
-    if PRESENTER == "kms":
-        check(len(vblanks) >= 240, "toggle: the kernel saw", len(vblanks), "vblank events")
-        late = [mark for mark in marks[:240] if min(abs(mark - vblank) for vblank in vblanks) > 1000]
-        check(not late, "toggle:", len(late), "edges are not at a vblank event of the kernel")
+    check(PRESENTER != "kms" or len(vblanks) >= 240, "toggle: the kernel saw", len(vblanks), "vblanks")
+    delays = check_at_vblanks(marks[:240], vblanks, "toggle")
+    if delays:
+        print(f"tracepoints, vblank to edge: mean {sum(delays) / len(delays):.1f}, max {max(delays):.1f} us")
+    check(status["sets"][-1][1:] == (17, 0), "toggle: level at the end", status["sets"][-1])
 
-    status, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "pulse", "--gpio-pulse-us", "500")
+    status, edges, vblanks = watched("--gpio-line", "MARKER", "--gpio-offset-us", "4167", "--gpio-initial", "high",
+                                     "--gpio-final", "high")
+    check(status["sets"][0][1:] == (17, 1), "initial level", status["sets"][0])
+    check(status["sets"][-1][1:] == (17, 1), "final level", status["sets"][-1])
+    marks = of_line(edges, 17)[1:240]
+    check_steady(marks, "offset", 1, 239)
+    check_at_vblanks(marks, vblanks, "offset", after_us=4167)
+
+
+def check_pulses():
+    status, edges, vblanks = watched("--gpio-line", "MARKER", "--gpio-pattern", "pulse", "--gpio-pulse-us", "500")
     check_steady(of_line(edges, 17, 1), "pulse", 1, status["flips"])
+    check_at_vblanks(of_line(edges, 17, 1)[:240], vblanks, "pulse")
     widths = [off - on for on, off in zip(of_line(edges, 17, 1), of_line(edges, 17, 0))]
     check(all(499 <= width <= 560 for width in widths), "pulse widths", min(widths), max(widths))
 
-    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "pulse-real")
+    _, edges, vblanks = watched("--gpio-line", "MARKER", "--gpio-pattern", "pulse-real")
     check_steady(of_line(edges, 17, 1), "pulse-real", 3, 80)
+    check_at_vblanks(of_line(edges, 17, 1), vblanks, "pulse-real", 3)
 
-    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "level-real", "--gpio-chip", "lab-chip")
+    _, edges, vblanks = watched("--gpio-line", "MARKER", "--gpio-pattern", "level-real", "--gpio-chip", "lab-chip")
     ups, downs = of_line(edges, 17, 1), of_line(edges, 17, 0)
     check_steady(ups, "level-real up", 3, 80)
     check_steady(downs[:80], "level-real down", 3, 80)
+    check_at_vblanks(ups, vblanks, "level-real up", 3)
+    check_at_vblanks(downs[:80], vblanks, "level-real down", 3)
     check(all(abs(down - up - PERIOD_US) < 60 for up, down in zip(ups, downs)), "level-real: high for one refresh")
 
-    status, edges, _ = watched("--gpio-line", "MARKER,REAL,BETWEEN", "--gpio-pattern", "three-lines", "--gpio-pulse-us",
-                               "300", "--gpio-chip", "gpiochip0")
+
+def check_three_lines():
+    status, edges, vblanks = watched("--gpio-line", "MARKER,REAL,BETWEEN", "--gpio-pattern", "three-lines",
+                                     "--gpio-pulse-us", "300", "--gpio-chip", "gpiochip0")
     flips, reals, betweens = (of_line(edges, offset, 1) for offset in (17, 18, 19))
     check_steady(flips, "three-lines flip", 1, status["flips"])
     check_steady(reals, "three-lines real", 3, 80)
+    check_at_vblanks(flips[:240], vblanks, "three-lines flip")
+    check_at_vblanks(reals, vblanks, "three-lines real", 3)
+    check_at_vblanks(betweens[::2], vblanks, "three-lines first in-between", 3)
+    check_at_vblanks(betweens[1::2], vblanks, "three-lines second in-between", 3)
     check(len(betweens) == 160, "three-lines between", len(betweens))
     check(all(abs(real - flip) < 30 for real, flip in zip(reals, flips[::3])), "three-lines: set at once")
 
-    status, edges, _ = watched("--gpio-line", "8,9,10,11", "--gpio-pattern", "counter", "--gpio-chip", "/dev/gpiochip0")
+
+def check_counter():
+    _, edges, vblanks = watched("--gpio-line", "8,9,10,11", "--gpio-pattern", "counter", "--gpio-chip", "/dev/gpiochip0")
     level, values = 0, []
     for time_us, line, value in edges:
         level = level & ~(1 << line - 8) | value << line - 8
@@ -173,38 +116,75 @@ def check_patterns():
     counted = [value for _, value in values][:200]
     check(all((b - a) % 16 == 1 for a, b in zip(counted, counted[1:])), "counter counts", counted[:20])
     check_steady([time_us for time_us, _ in values][:200], "counter", 1, 200)
-
-    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-pattern", "sequence", "--gpio-active-low", flips=600)
-    check_sequence(edges)
-    _, edges, _ = watched("--gpio-line", "MARKER", "--gpio-offset-us", "4167", "--gpio-initial", "high", "--gpio-final", "high")
-    check_steady(of_line(edges, 17)[1:240], "offset", 1, 239)
-    check(read(f"{CHIP}/sim_gpio17/value").strip() in "01", "level at the end")
+    check_at_vblanks([time_us for time_us, _ in values][:200], vblanks, "counter")
 
 
-def check_sequence(edges):
+def check_sequence(edges, vblanks):
     """The levels of 600 refreshes obey the recurrence of the sequence; an active-low line shows its complement."""
     times = of_line(edges, 17)
-    level, bits, at = edges[0][2], [], times[0] + PERIOD_US / 2
+    level, bits = edges[0][2], []
     changes = {round((time_us - times[0]) / PERIOD_US): value for time_us, line, value in edges if line == 17}
     for step in range(500):
         level = changes.get(step, level)
         bits.append(1 - level)
     wrong = sum(bits[i] != bits[i - 16] ^ bits[i - 14] ^ bits[i - 13] ^ bits[i - 11] for i in range(32, 500))
     check(wrong == 0, "sequence: the recurrence does not hold", wrong, "times")
-    return at
+    # The first edge is that of the request; the sequence keeps its level at every second vblank or so.
+    for time_us in times[1:200]:
+        check_at_vblanks([time_us], vblanks, "sequence")
 
 
 def check_soak():
+    """Ten minutes at 120 Hz: each vblank of the kernel's has its edge, in order, none twice."""
     flips = 72000
-    status, edges, _ = watched("--gpio-line", "MARKER", flips=flips)
+    status, edges, vblanks = watched("--gpio-line", "MARKER", flips=flips)
     marks = of_line(edges, 17)
     check(status["flips"] >= flips, "soak: flips", status["flips"])
     check_steady(marks[:flips], "soak", 1)
+    delays = check_at_vblanks(marks[:flips], vblanks, "soak")
+    check(PRESENTER != "kms" or len(delays) == flips, "soak: compared", len(delays))
     check(len(marks) in (status["flips"], status["flips"] + 1), "soak: edges", len(marks), "of", status["flips"])
     check(status["lost_edges"] == 0 and status["dropped_flips"] == 0, "soak:", status)
     span = status["spans"]["flip_to_edge"]
     print(f"flip to edge over {span['count']} flips: mean {span['mean_us']:.1f} us, p99 {span['p99_us']:.1f} us, "
           f"max {span['max_us']:.1f} us")
+    if delays:
+        print(f"tracepoints, vblank to edge over {len(delays)} vblanks: mean {sum(delays) / len(delays):.1f}, "
+              f"max {max(delays):.1f} us")
+
+
+def check_trigger():
+    """Pulls of the trigger line at random times: each is noted, with the time that it had, at the first flip after it."""
+    log_path = f"{TMP}/log.csv"
+    command = [RIG_LAB, "--flips", "1200", "--trigger-line", "TRIGGER", "--trigger-active-low", "--latency-log", log_path,
+               *DISPLAY]
+    write(f"{CHIP}/sim_gpio5/pull", "pull-up")
+    pulls, dice = [], random.Random(6)
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as lab:
+        time.sleep(1)
+        for _ in range(300):
+            time.sleep(0.001 + 0.04 * dice.random())
+            before = time.monotonic_ns()
+            write(f"{CHIP}/sim_gpio5/pull", "pull-down")
+            pulls.append((before, time.monotonic_ns()))
+            time.sleep(0.0005)
+            write(f"{CHIP}/sim_gpio5/pull", "pull-up")
+        out, _ = lab.communicate(timeout=120)
+    status = json.loads(out.splitlines()[-1])
+    with open(log_path) as source:
+        rows = [(int(row["flip_ns"]), int(row["trigger_ns"] or 0))
+                for row in csv.DictReader(line for line in source if not line.startswith("#"))]
+    # The newest of those between two flips is noted, so the older one of two in one refresh is not.
+    newest = {}
+    for before, after in pulls:
+        flip = next((flip for flip, _ in rows if flip > after), None)
+        if flip:
+            newest[flip] = (before, after)
+    wrong = [flip for flip, trigger in rows if trigger and not newest.get(flip, (0, 0))[0] <= trigger <= newest[flip][1]]
+    noted = sum(trigger != 0 for _, trigger in rows)
+    print(f"{status['triggers']} triggers of {len(pulls)}, {noted} noted with a flip, {len(wrong)} wrong")
+    check(status["triggers"] == len(pulls), "trigger: seen", status["triggers"], "of", len(pulls))
+    check(noted == len(newest) and noted > 150 and not wrong, "trigger: noted", noted, "of", len(newest), "wrong", len(wrong))
 
 
 def check_inputs():
@@ -271,7 +251,6 @@ def check_vsync():
 
 def check_vanish():
     """Unplugged after 1 s, back after 2 s; somebody holds the line first."""
-    trace_start()
     command = [RIG_LAB, "--flips", "600", "--gpio-line", "MARKER", "--photodiode-line", "PHOTODIODE", *DISPLAY]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as lab:
         time.sleep(1.5)
@@ -331,7 +310,7 @@ def check_strobe():
     check(read(f"{CHIP}/sim_gpio6/value").strip() == "0", "strobe: on at the end")
     # Killed while the light is on: the guard puts it out.
     write(f"{CHIP}/sim_gpio6/pull", "pull-up")
-    trace_start()
+    trace_start(False)
     with subprocess.Popen([RIG_LAB, "--flips", "600", "--strobe-line", "STROBE", "--strobe-phase", "0.1",
                            "--strobe-duty", "0.5", "--strobe-limit", "0.5"], stderr=subprocess.DEVNULL,
                           stdout=subprocess.DEVNULL) as lab:
@@ -341,19 +320,18 @@ def check_strobe():
         lab.kill()
         lab.wait()
         time.sleep(0.5)
-    edges, _ = trace_read(chip_base())
-    last = [edge for edge in edges if edge[1] == 6][-1]
-    check(last[2] == 0, "strobe: left on by a crash", edges[-3:])
+    sets, _ = trace_read()
+    last = [line for line in sets if line[1] == 6][-1]
+    check(last[2] == 0, "strobe: left on by a crash", sets[-3:])
 
 
-def check_daemon():
-    """The whole daemon with a client, not the lab alone: flips of pursuitd, edges of the kernel."""
+def run_daemon(log):
+    """pursuitd with a client for three seconds; what it said."""
     build = os.path.join(os.path.dirname(RIG_LAB), "..", "..")
-    log = f"{TMP}/daemon.csv"
     os.environ["PURSUIT_SOCKET"] = f"{TMP}/socket"
-    trace_start()
-    with subprocess.Popen([f"{build}/daemon/pursuitd", "--method", "hold", "--latency-log", log, "--gpio-line", "MARKER",
-                           "--patch", "sequence", *DISPLAY], stderr=subprocess.PIPE, text=True) as daemon:
+    command = [f"{build}/daemon/pursuitd", "--method", "hold", "--latency-log", log, "--gpio-line", "MARKER", "--patch",
+               "sequence", "--present", PRESENTER, "--mode", "640x480@120"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as daemon:
         while not os.path.exists(f"{TMP}/socket"):
             time.sleep(0.05)
         client = subprocess.Popen([f"{build}/client/examples/example-memory"], stdout=subprocess.DEVNULL)
@@ -363,17 +341,30 @@ def check_daemon():
         time.sleep(1.5)
         daemon.terminate()
         daemon.wait(timeout=60)
-        said = daemon.stderr.read()
+        return daemon.stderr.read()
+
+
+def check_daemon():
+    """The whole daemon with a client, not the lab alone: flips of pursuitd, edges and vblanks of the kernel."""
+    log = f"{TMP}/daemon.csv"
+    trace_start(PRESENTER == "kms")
+    said = run_daemon(log)
     with open(log) as source:
         rows = list(csv.DictReader(line for line in source if not line.startswith("#")))
-    marks = of_line(trace_read(chip_base())[0], 17)
+    sets, vblanks = trace_read()
+    marks = of_line(edges_of(sets), 17)
     print(f"{len(rows)} refreshes, {len(marks)} edges")
     check(len(rows) > 300, "daemon: rows", len(rows), said)
     check(len(marks) - len(rows) in (0, 1), "daemon: edges", len(marks), "of", len(rows))
-    errors = sorted(int(row["edge_ns"] or 0) / 1e3 - mark for row, mark in zip(rows, marks))
-    print(f"log less tracepoint: median {errors[len(errors) // 2]:.1f}, {errors[0]:.1f} to {errors[-1]:.1f} us")
+    errors = sorted(int(row["edge_ns"] or 0) / 1e3 - mark for row, mark in zip(rows, marks)) or [0]
+    print(f"edges, log less tracepoint: median {errors[len(errors) // 2]:.1f}, {errors[0]:.1f} to {errors[-1]:.1f} us")
     far = [row for row, mark in zip(rows, marks) if not -1000 < int(row["edge_ns"] or 0) - mark * 1000 < 60000]
     check(not far, "daemon:", len(far), "edges of the log are not where the kernel saw them", far[:2])
+    if PRESENTER == "kms":
+        stamps = {round(us * 1e3) for us in vblanks}
+        unknown = [row["flip_ns"] for row in rows if int(row["flip_ns"]) not in stamps]
+        print(f"flips: {len(rows) - len(unknown)} of {len(rows)} have the stamp of a vblank of the kernel, to the ns")
+        check(not unknown, "daemon:", len(unknown), "flips of the log are at no vblank of the kernel", unknown[:3])
     reals = [row for row in rows if row["show"] == "real"]
     check(len(reals) > 80 and all(row["submit_ns"] and row["ready_ns"] for row in reals), "daemon: real", len(reals))
 
@@ -401,33 +392,63 @@ def check_loopback():
     check(figures["rising"]["min_us"] >= 0, "loopback: an edge before it was set", figures)
 
 
-def hog():
+HOG_PROGRAM = """
+import os, time
+zero = os.open("/dev/zero", os.O_RDONLY)
+while True:
+    end = time.monotonic() + 0.0045
+    while time.monotonic() < end:
+        os.read(zero, 4096)
+    time.sleep(0.0055)
+"""
+
+
+def hogs():
     """
-    Two programs that want the core, as nice as can be. They call the kernel all the time: one that only computes would
-    keep the core from the kernel itself where the host runs all of the rig at one real-time priority.
+    Two programs that want nine tenths of the core between them, as nice as can be. Not all of it: where the host runs all
+    of the rig at one real-time priority it takes the core away for 50 ms of a second that has no pause (its fair server,
+    or its limit on real-time programs), and that would be all that is measured. They call the kernel all the time, which
+    has no preemption here.
     """
-    copy = ["nice", "-n", "19", "dd", "if=/dev/zero", "of=/dev/null", "bs=16k"]
-    return [subprocess.Popen(copy, stderr=subprocess.DEVNULL) for _ in range(2)]
+    return [subprocess.Popen(["nice", "-n", "19", sys.executable, "-c", HOG_PROGRAM]) for _ in range(2)]
+
+
+def raise_kernel_workers():
+    """
+    The virtual display's driver does each flip on a worker of the kernel, of ordinary priority: here it has to wait for the
+    hogs (this kernel counts their time in steps of 10 ms), and flips miss their vblanks. Display hardware needs no such
+    worker to flip.
+    """
+    for path in glob.glob("/proc/[0-9]*/comm"):
+        if read(path).startswith("kworker"):
+            os.sched_setscheduler(int(path.split("/")[2]), os.SCHED_RR, os.sched_param(1))
+
+
+def measure(load, priority, flips):
+    """Flip to edge in real time, by the log and by tracepoints: a line of the table; the status."""
+    programs = hogs() if load else []
+    raise_kernel_workers()
+    status, edges, vblanks = watched("--gpio-line", "MARKER", "--lab-priority", str(priority), flips=flips)
+    for program in programs:
+        program.kill()
+    span, event, own, gpio = (status["spans"][name] for name in ("flip_to_edge", "flip_to_event", "event_to_edge", "gpio_set"))
+    print(f"load {'yes' if load else 'no ':3} priority {priority:2}: flip to edge mean {span['mean_us']:.0f}, median "
+          f"{span['p50_us']:.0f}, 99 % {span['p99_us']:.0f}, max {span['max_us']:.0f} us; flip to event 99 % "
+          f"{event['p99_us']:.0f}; event to edge mean {own['mean_us']:.0f}, 99 % {own['p99_us']:.0f}, max "
+          f"{own['max_us']:.0f}; set mean {gpio['mean_us']:.1f}; {len(edges)} edges of {status['flips']} flips")
+    return status
 
 
 def check_realtime():
     """Real time, load, real-time priority: flip to edge stays far below what a laboratory notices."""
-    hogs = hog()
-    for priority in (20, 0):
-        status, edges, vblanks = watched("--gpio-line", "MARKER", "--lab-priority", str(priority), flips=2400)
-        span, set_span, event = (status["spans"][name] for name in ("flip_to_edge", "gpio_set", "flip_to_event"))
-        own = status["spans"]["event_to_edge"]
-        print(f"priority {priority}: flip to edge mean {span['mean_us']:.0f}, median {span['p50_us']:.0f}, 99 % "
-              f"{span['p99_us']:.0f}, max {span['max_us']:.0f} us; event mean {event['mean_us']:.0f}, 99 % "
-              f"{event['p99_us']:.0f} us; event to edge mean {own['mean_us']:.0f}, "
-              f"median {own['p50_us']:.0f}, 99 % {own['p99_us']:.0f}, max {own['max_us']:.0f} us; set mean {set_span['mean_us']:.1f}, 99 % {set_span['p99_us']:.1f} us; "
-              f"{len(edges)} edges of {status['flips']} flips; {status['cpu_us_per_flip']:.0f} us of CPU a flip")
-        if priority:
-            check(status["lost_edges"] == 0, "realtime: lost", status["lost_edges"])
-            # Loose, since the host may be busy with anything; docs/figures.md has what an idle one does.
-            check(span["p99_us"] < 100000, "realtime: 99 % of flip to edge", span["p99_us"])
-    for process in hogs:
-        process.kill()
+    for load in (False, True):
+        for priority in (20, 0):
+            status = measure(load, priority, 1200)
+            if priority:
+                check(status["lost_edges"] == 0, "realtime: lost", status["lost_edges"])
+                # Loose, since the host may be busy with anything; docs/figures.md has what an idle one does.
+                p99 = status["spans"]["flip_to_edge"]["p99_us"]
+                check(p99 < 100000, "realtime: 99 % of flip to edge", p99)
 
 
 CHIP = make_chip()
