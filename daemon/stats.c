@@ -56,7 +56,7 @@ static void add_name(struct stats_name *names, uint32_t *count, const char *name
 void stats_add_report(struct stats *stats, const struct engine_report *report)
 {
 	stats_spread_add(&stats->engine_ms, report->total_ms);
-	stats->engine_bytes = report->memory_bytes;
+	stats->engine_bytes = report->memory_bytes + report->plan_bytes;
 	for (uint32_t i = 0; i < report->pass_count && i < ENGINE_MAX_PASSES; i++)
 		add_name(stats->passes, &stats->pass_count, report->passes[i].name, report->passes[i].runs);
 	for (uint32_t i = 0; i < report->left_out_count && i < ENGINE_MAX_LEFT_OUT; i++)

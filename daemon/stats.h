@@ -76,7 +76,8 @@ struct stats {
 	uint64_t unbalanced_vblanks; /* late in-betweens of boosted real frames: light that was missed, not carried */
 	uint64_t flips_by_source[PRESENTER_TIME_SOURCES]; /* where their time stamps are from */
 	struct governor governor;                         /* as it is now */
-	uint64_t engine_bytes; /* that the engine's pictures and buffers take, as of the last real frame; 0: not counted */
+	uint64_t
+		engine_bytes; /* that the engine takes, in GL's memory and its own, as of the last real frame; 0: not counted */
 	struct stats_spread engine_ms, submit_to_flip_ms, flip_error_ms;
 	struct stats_name passes[STATS_NAMES], left_out[STATS_NAMES];
 	uint32_t pass_count, left_out_count;

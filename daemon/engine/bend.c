@@ -152,6 +152,12 @@ void bend_forget(struct bend *bend)
 	bend->bent = 0;
 }
 
+uint64_t bend_bytes(const struct bend *bend)
+{
+	return plan_dense_bytes(&bend->fields[0]) + plan_dense_bytes(&bend->fields[1]) +
+		   2 * sizeof(struct bend_vector) * (uint64_t)bend->capacity;
+}
+
 void bend_finish(struct bend *bend)
 {
 	for (int i = 0; i < 2; i++)

@@ -46,6 +46,8 @@ struct bend_vector bend_change(const struct plan_dense *now, const struct plan_d
 
 /* What comes next has nothing to do with what was before. */
 void bend_forget(struct bend *bend);
+/* Memory that it holds. */
+uint64_t bend_bytes(const struct bend *bend);
 void bend_finish(struct bend *bend);
 
 #endif

@@ -192,6 +192,8 @@ const struct engine_report *engine_get_report(struct engine *engine)
 {
 	engine->executor->ops->collect_times(engine->executor);
 	engine->report.memory_bytes = engine->executor->bytes;
+	engine->report.plan_bytes = plan_bytes(&engine->plan) + warp_mesh_bytes(&engine->mesh) +
+								pixel_state_bytes(&engine->pixels) + bend_bytes(&engine->bend);
 	return &engine->report;
 }
 

@@ -156,6 +156,7 @@ struct engine_report {
 	uint64_t invalid_pixels;
 	uint64_t bytes_up, bytes_down;
 	uint64_t memory_bytes; /* that pictures and buffers take now, in GL's memory if it draws with GL; 0: not counted */
+	uint64_t plan_bytes;   /* of the process that the plan, its triangles and what a method keeps by pixel take now */
 };
 
 struct engine_info {

@@ -24,6 +24,17 @@ void pixel_state_forget(struct pixel_state *state)
 	state->count = 0;
 }
 
+uint64_t pixel_state_bytes(const struct pixel_state *state)
+{
+	const struct scatter *scatter = &state->scatter;
+	uint64_t bytes = state->shown_bytes + scatter->fill.value_capacity * sizeof(*scatter->fill.values) +
+					 scatter->fill.valid_capacity;
+	bytes += scatter->capacity * (uint64_t)(sizeof(*scatter->source) + 3 * sizeof(*scatter->values) + 1);
+	for (int i = 0; i < 2; i++)
+		bytes += state->frames[i].bytes + plan_dense_bytes(&state->frames[i].dense);
+	return bytes;
+}
+
 void pixel_state_finish(struct pixel_state *state)
 {
 	for (int i = 0; i < 2; i++) {

@@ -45,6 +45,8 @@ bool bitmap_resize(struct bitmap *bitmap, size_t *bytes, uint32_t width, uint32_
 
 /* What comes next has nothing to do with what was before. */
 void pixel_state_forget(struct pixel_state *state);
+/* Memory that it holds. */
+uint64_t pixel_state_bytes(const struct pixel_state *state);
 void pixel_state_finish(struct pixel_state *state);
 
 #endif

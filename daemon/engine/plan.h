@@ -94,6 +94,9 @@ struct plan {
 /* A zeroed struct plan is ready for use. */
 void plan_finish(struct plan *plan);
 
+/* Memory that it holds. */
+uint64_t plan_bytes(const struct plan *plan);
+
 /*
  * Analyses the frame and fills the plan. Reads motion and depth by blocks of
  * rows that it copies first, since the client may change them meanwhile; never

@@ -68,6 +68,8 @@ struct warp_mesh {
  */
 int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct pool *pool,
 					struct error *error);
+/* Memory that it holds. */
+uint64_t warp_mesh_bytes(const struct warp_mesh *mesh);
 void warp_mesh_finish(struct warp_mesh *mesh);
 
 /* Unmarks all of `low` and `levels` for a picture of that size. 0 or -ENOMEM with a sentence. */

@@ -119,6 +119,11 @@ int plan_dense_make(struct plan_dense *dense, const struct frame *frame, const s
 	return error_set(error, -ENOMEM, "no memory for the motion of a %u x %u picture, pixel by pixel", width, height);
 }
 
+uint64_t plan_dense_bytes(const struct plan_dense *dense)
+{
+	return 3 * sizeof(float) * (uint64_t)dense->capacity + dense->scratch_bytes;
+}
+
 void plan_dense_finish(struct plan_dense *dense)
 {
 	free(dense->storage);

@@ -34,6 +34,8 @@ struct plan_dense {
  */
 int plan_dense_make(struct plan_dense *dense, const struct frame *frame, const struct plan_params *params,
 					struct error *error);
+/* Memory that it holds. */
+uint64_t plan_dense_bytes(const struct plan_dense *dense);
 void plan_dense_finish(struct plan_dense *dense);
 
 #endif

@@ -86,6 +86,12 @@ int plan_make(struct plan *plan, const struct frame *frame, const struct plan_pa
 	return plan_make_with(plan, frame, params, plan->kernels, error);
 }
 
+uint64_t plan_bytes(const struct plan *plan)
+{
+	return plan->vertex_capacity * (uint64_t)sizeof(*plan->vertices) +
+		   plan->index_capacity * (uint64_t)sizeof(*plan->indices) + plan->scratch_bytes;
+}
+
 void plan_finish(struct plan *plan)
 {
 	if (!plan)

@@ -185,6 +185,12 @@ int scene_prepare(struct scene *scene, struct error *error)
 	return error_set(error, -ENOMEM, "out of memory for %u triangles", scene->mesh->list_count / 3);
 }
 
+uint64_t scene_bytes(const struct scene *scene)
+{
+	const struct bins *bins = &scene->bins;
+	return scene->position_bytes + bins->start_bytes + bins->cursor_bytes + bins->triangle_bytes + bins->range_bytes;
+}
+
 void scene_finish(struct scene *scene)
 {
 	free(scene->positions);

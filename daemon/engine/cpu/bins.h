@@ -13,6 +13,8 @@
  * grows and stays. 0 or -ENOMEM with a sentence.
  */
 int scene_prepare(struct scene *scene, struct error *error);
+/* Memory that it holds. */
+uint64_t scene_bytes(const struct scene *scene);
 void scene_finish(struct scene *scene);
 
 static inline uint32_t scene_tiles(const struct scene *scene)

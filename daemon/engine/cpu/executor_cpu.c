@@ -73,7 +73,23 @@ static void time_end(struct executor *executor)
 	cpu->timed->runs++;
 }
 
+static uint64_t count_bytes(const struct executor_cpu *executor)
+{
+	uint64_t bytes = sizeof(*executor) + pool_threads(executor->base.pool) * sizeof(*executor->scratch);
+	for (int i = 0; i < PICTURE_COUNT; i++)
+		bytes += executor->pictures[i].capacity;
+	for (int i = 0; i < MAX_LEVELS; i++)
+		bytes += executor->levels[i].capacity;
+	return bytes + layers_bytes(&executor->layers) + scene_bytes(&executor->scene) + executor->weights.capacity +
+		   executor->intake.bounds_capacity * sizeof(*executor->intake.bounds);
+}
+
 static void collect_times(struct executor *executor)
+{
+	executor->bytes = count_bytes(self(executor));
+}
+
+static void drop_times(struct executor *executor)
 {
 }
 
@@ -104,7 +120,7 @@ static const struct executor_ops ops = {
 	.time_begin = time_begin,
 	.time_end = time_end,
 	.collect_times = collect_times,
-	.drop_times = collect_times,
+	.drop_times = drop_times,
 	.time_source = time_source,
 };
 

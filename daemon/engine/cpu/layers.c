@@ -16,6 +16,11 @@ void layers_clear(struct layers *layers)
 	layers->shown = PICTURE_ORIGINAL;
 }
 
+uint64_t layers_bytes(const struct layers *layers)
+{
+	return layers->capacity * (uint64_t)(sizeof(*layers->blocks) + 3 * BLOCK_BYTES);
+}
+
 void layers_finish(struct layers *layers)
 {
 	free(layers->blocks);

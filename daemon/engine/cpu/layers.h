@@ -31,6 +31,8 @@ struct layers {
 
 /* No blocks: all three are what the canvas holds. */
 void layers_clear(struct layers *layers);
+/* Memory that they hold. */
+uint64_t layers_bytes(const struct layers *layers);
 void layers_finish(struct layers *layers);
 
 /* The marked tiles, BLOCK_SIZE pixels a side, become blocks, their pixels undefined. 0 or -ENOMEM with a sentence. */
