@@ -110,6 +110,7 @@ void render_set_streams(struct render *render, struct stream *const *streams, ui
 {
 	struct stream *shown = count ? streams[count - 1] : NULL;
 	bool found = false;
+	showing_forget_ended(&render->showing);
 	for (uint32_t i = 0; i < count; i++)
 		found |= streams[i]->number == render->stream_number;
 	if (!found && render->group > 0 && !render->orphan) {

@@ -32,9 +32,11 @@ static void close_frame(struct showing *showing, struct showing_frame *frame)
 	} else {
 		frame->report.state = PURSUIT_FEEDBACK_REPLACED;
 		showing->stats->lost_real_frames++;
-		atomic_fetch_add(&frame->stream->counters.lost_frames, 1);
+		if (frame->stream)
+			atomic_fetch_add(&frame->stream->counters.lost_frames, 1);
 	}
-	stream_feedback(frame->stream, &frame->report);
+	if (frame->stream)
+		stream_feedback(frame->stream, &frame->report);
 	stream_release(&frame->stream);
 	frame->group = 0;
 }
@@ -45,6 +47,13 @@ void showing_close_frames(struct showing *showing, uint64_t group)
 	for (uint64_t g = group > SHOWING_FRAMES ? group - SHOWING_FRAMES : 1; g < group; g++)
 		if (showing->frames[g % SHOWING_FRAMES].group == g)
 			close_frame(showing, &showing->frames[g % SHOWING_FRAMES]);
+}
+
+void showing_forget_ended(struct showing *showing)
+{
+	for (uint32_t i = 0; i < SHOWING_FRAMES; i++)
+		if (showing->frames[i].stream && atomic_load(&showing->frames[i].stream->ended))
+			stream_release(&showing->frames[i].stream);
 }
 
 void showing_add_frame(struct showing *showing, uint64_t group, struct stream *stream, const struct frame *frame)

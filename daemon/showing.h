@@ -41,7 +41,7 @@ enum showing_plan {
 /* One real frame. */
 struct showing_frame {
 	uint64_t group;        /* 0: free */
-	struct stream *stream; /* referenced */
+	struct stream *stream; /* referenced; NULL: it has ended */
 	struct pursuit_feedback report;
 	bool boosted; /* its first showing gives light that its in-betweens take away */
 };
@@ -63,6 +63,9 @@ struct showing {
 
 void showing_init(struct showing *showing, struct stats *stats);
 void showing_finish(struct showing *showing);
+
+/* Gives streams that have ended back at once: their clients are gone, nobody reads a report. */
+void showing_forget_ended(struct showing *showing);
 
 /* A real frame was taken and will be shown as this group. Keeps a reference to the stream. */
 void showing_add_frame(struct showing *showing, uint64_t group, struct stream *stream, const struct frame *frame);

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Processes that are suspended for a while (SIGSTOP) and go on: the daemon under a running game, and the client that
+ * is shown. To the one that wakes up, all clocks have jumped. Three seconds in ./check, as long as one likes by hand.
+ *
+ *   test-suspend PURSUITD [SECONDS]
+ */
+
+#include <jansson.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "client/pursuit.h"
+#include "tests/daemon/fixture.h"
+#include "tests/daemon/raw-client.h"
+
+#define FRAME_MS 16u
+
+static struct fixture fixture;
+static unsigned seconds = 3;
+
+static struct pursuit_stream *open_stream(void)
+{
+	const struct pursuit_stream_params params = {.width = 64,
+												 .height = 48,
+												 .depth_format = PURSUIT_DEPTH_FLOAT32,
+												 .motion_format = PURSUIT_MOTION_FLOAT16,
+												 .socket_path = fixture.socket};
+	struct pursuit_stream *stream = pursuit_open(&params);
+	CHECK(stream != NULL);
+	return stream;
+}
+
+static bool is_attached(struct pursuit_stream *stream)
+{
+	struct pursuit_status status;
+	pursuit_get_status(stream, &status);
+	return status.state == PURSUIT_STATE_ATTACHED;
+}
+
+/* One frame of a game; the time that the shim took of it, ns. */
+static uint64_t play_frame(struct pursuit_stream *stream)
+{
+	const uint64_t start = now_ns();
+	struct pursuit_frame *frame = pursuit_acquire(stream);
+	if (frame)
+		pursuit_submit(stream, frame);
+	const uint64_t taken = now_ns() - start;
+	sleep_ms(FRAME_MS);
+	return taken;
+}
+
+/* Reports read now that say "shown" of frames submitted after a time. */
+static unsigned count_shown(struct pursuit_stream *stream, uint64_t after_ns)
+{
+	struct pursuit_feedback_report report;
+	unsigned shown = 0;
+	while (pursuit_poll_feedback(stream, &report))
+		shown += report.shown == PURSUIT_SHOWN && report.submit_ns > after_ns;
+	return shown;
+}
+
+/* Plays until so many frames submitted from now on were shown, 20 s at most. The time it took, ns. */
+static uint64_t play_until_shown(struct pursuit_stream *stream, unsigned wanted)
+{
+	const uint64_t start = now_ns();
+	unsigned shown = 0;
+	for (int i = 0; i < 1250 && shown < wanted; i++) {
+		play_frame(stream);
+		shown += count_shown(stream, start);
+	}
+	CHECK(shown >= wanted);
+	return now_ns() - start;
+}
+
+static struct raw_reply reply;
+
+/* What it is answered, as JSON if it is. */
+static json_t *ask(const char *request)
+{
+	const int fd = raw_greet(fixture.socket);
+	CHECK_INT(raw_control(fd, request, -1, &reply), 0);
+	close(fd);
+	return json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
+}
+
+static json_int_t figure(const char *name)
+{
+	json_t *object = ask("status");
+	const json_t *value = json_object_get(object, name);
+	const json_int_t number = json_is_array(value) ? (json_int_t)json_array_size(value) : json_integer_value(value);
+	json_decref(object);
+	return number;
+}
+
+/* The game renders on as if nothing were, is attached all the while, and is shown again soon. */
+static void test_daemon_suspended(void)
+{
+	uint64_t longest_ns = 0, quick = 0, calls = 0;
+	fixture_start(&fixture, NULL);
+	struct pursuit_stream *stream = open_stream();
+	play_until_shown(stream, 5);
+	kill(fixture.pid, SIGSTOP);
+	for (const uint64_t end = now_ns() + seconds * UINT64_C(1000000000); now_ns() < end; calls++) {
+		const uint64_t taken = play_frame(stream);
+		longest_ns = taken > longest_ns ? taken : longest_ns;
+		quick += taken < FRAME_MS * UINT64_C(1000000);
+		CHECK(is_attached(stream));
+	}
+	kill(fixture.pid, SIGCONT);
+	const uint64_t back_ns = play_until_shown(stream, 1);
+	printf("       daemon suspended for %u s: %llu frames rendered, longest call %.3f ms; shown again after %.0f ms\n",
+		   seconds, (unsigned long long)calls, (double)longest_ns / 1e6, (double)back_ns / 1e6);
+	/* The machine may be busy, but not in most calls. */
+	CHECK(quick > calls / 2);
+	play_until_shown(stream, 30);
+	CHECK(is_attached(stream));
+	CHECK_INT(figure("streams"), 1);
+	CHECK_INT(figure("engine_losses"), 0);
+	CHECK_INT(figure("refused_frames"), 0);
+	pursuit_close(&stream);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+static void focus(pid_t pid)
+{
+	json_t *status = ask("status"), *streams = json_object_get(status, "streams");
+	char request[64] = "";
+	for (size_t i = 0; i < json_array_size(streams); i++) {
+		const json_t *stream = json_array_get(streams, i);
+		if (json_integer_value(json_object_get(stream, "pid")) == pid)
+			snprintf(request, sizeof(request), "set focus=%d",
+					 (int)json_integer_value(json_object_get(stream, "client_id")));
+	}
+	json_decref(status);
+	json_decref(ask(request));
+}
+
+static pid_t start_client(void)
+{
+	fflush(stdout);
+	const pid_t child = fork();
+	if (child != 0)
+		return child;
+	struct pursuit_stream *stream = open_stream();
+	for (;;)
+		play_frame(stream);
+}
+
+static bool wait_for_streams(json_int_t wanted)
+{
+	json_int_t streams = -1;
+	for (int waited = 0; waited < 20000 && streams != wanted; waited += 10) {
+		streams = figure("streams");
+		sleep_ms(10);
+	}
+	return streams == wanted;
+}
+
+/* It keeps its stream and nobody else; who is focused meanwhile is shown; it goes on where it was. */
+static void test_client_suspended(void)
+{
+	fixture_start(&fixture, NULL);
+	struct pursuit_stream *stream = open_stream();
+	play_until_shown(stream, 3);
+	const pid_t child = start_client();
+	CHECK(wait_for_streams(2));
+	kill(child, SIGSTOP);
+	const uint64_t end = now_ns() + seconds * UINT64_C(1000000000);
+	focus(getpid());
+	const uint64_t shown_ns = play_until_shown(stream, 1);
+	while (now_ns() < end)
+		play_frame(stream);
+	play_until_shown(stream, 10);
+	CHECK_INT(figure("streams"), 2);
+	printf("       client suspended for %u s: another one is shown %.0f ms after it is chosen\n", seconds,
+		   (double)shown_ns / 1e6);
+	const json_int_t received = figure("received_frames");
+	kill(child, SIGCONT);
+	focus(child);
+	for (int waited = 0; waited < 20000 && figure("received_frames") < received + 5; waited += 20)
+		sleep_ms(20);
+	CHECK(figure("received_frames") >= received + 5);
+	kill(child, SIGKILL);
+	waitpid(child, NULL, 0);
+	CHECK(wait_for_streams(1));
+	play_until_shown(stream, 3);
+	pursuit_close(&stream);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+int main(int argc, char **argv)
+{
+	if (argc < 2)
+		return 2;
+	seconds = argc > 2 ? (unsigned)atoi(argv[2]) : seconds;
+	fixture_init(&fixture, argv[1]);
+	RUN(test_daemon_suspended);
+	RUN(test_client_suspended);
+	fixture_finish(&fixture);
+	return test_result();
+}
