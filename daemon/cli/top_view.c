@@ -22,6 +22,8 @@ static const struct {
 	[TOP_READY_BEFORE] = {"ready_before_ms", "ready before, ms", 2},
 	[TOP_SUBMIT_TO_FLIP] = {"submit_to_flip_ms", "submit to flip, ms", 2},
 	[TOP_SUBMIT_TO_FLIP_99] = {"submit_to_flip_p99_ms", "  99 %", 2},
+	[TOP_ENGINE] = {"engine_ms", "engine, ms", 2},
+	[TOP_ENGINE_99] = {"engine_p99_ms", "  99 %", 2},
 	[TOP_FLIP_TO_EDGE] = {"flip_to_edge_us", "flip to edge, us", 1},
 	[TOP_FLIP_TO_EDGE_99] = {"flip_to_edge_p99_us", "  99 %", 1},
 	[TOP_FLIP_TO_PHOTON] = {"flip_to_photon_ms", "flip to photon, ms", 2},
@@ -87,6 +89,24 @@ static void add_rows(const struct latency_table *rows, double now[TOP_FIGURES])
 	free(spans);
 }
 
+static double member(const json_t *status, const char *name, const char *share)
+{
+	const json_t *value = json_object_get(json_object_get(status, name), share);
+	const double number = json_number_value(value);
+	return number > 0.0 ? number : UNKNOWN;
+}
+
+/* Percentiles since the daemon's start, where the lab does not tell those of the moment. */
+static void add_status(const json_t *status, double now[TOP_FIGURES])
+{
+	now[TOP_ENGINE] = member(status, "engine_ms", "p50");
+	now[TOP_ENGINE_99] = member(status, "engine_ms", "p99");
+	if (json_is_object(json_object_get(status, "lab")))
+		return;
+	now[TOP_SUBMIT_TO_FLIP] = member(status, "submit_to_flip_ms", "p50");
+	now[TOP_SUBMIT_TO_FLIP_99] = member(status, "submit_to_flip_ms", "p99");
+}
+
 void top_view_add(struct top_view *view, json_t *status, const json_t *timeline, const struct latency_table *rows)
 {
 	double now[TOP_FIGURES];
@@ -94,6 +114,7 @@ void top_view_add(struct top_view *view, json_t *status, const json_t *timeline,
 		now[i] = NAN;
 	add_timeline(json_object_get(timeline, "rows"), now);
 	add_rows(rows, now);
+	add_status(status, now);
 	for (uint32_t i = 0; i < TOP_FIGURES; i++) {
 		if (view->rounds == 0)
 			for (uint32_t j = 0; j < TOP_TREND; j++)
@@ -101,15 +122,23 @@ void top_view_add(struct top_view *view, json_t *status, const json_t *timeline,
 		memmove(&view->trend[i][0], &view->trend[i][1], (TOP_TREND - 1) * sizeof(double));
 		view->trend[i][TOP_TREND - 1] = now[i];
 	}
-	json_decref(view->status);
+	json_decref(view->before);
+	view->before = view->status;
 	view->status = status;
 	view->rounds++;
+}
+
+void top_view_replace_status(struct top_view *view, json_t *status)
+{
+	json_decref(view->status);
+	view->status = status;
 }
 
 void top_view_finish(struct top_view *view)
 {
 	json_decref(view->status);
-	view->status = NULL;
+	json_decref(view->before);
+	view->status = view->before = NULL;
 }
 
 json_t *top_view_json(const struct top_view *view)
@@ -131,7 +160,7 @@ struct page {
 };
 
 /* Names come from clients: nothing that a terminal would obey. Cut to the width. */
-static void print_line(const struct page *page, const char *text)
+static void print_cut(const struct page *page, const char *text)
 {
 	unsigned column = 0;
 	for (const unsigned char *c = (const unsigned char *)text; *c; c++) {
@@ -140,16 +169,20 @@ static void print_line(const struct page *page, const char *text)
 			break;
 		fputc(*c < 0x20 || *c == 0x7f ? '?' : *c, page->out);
 	}
-	fputs(page->color ? "\033[K\n" : "\n", page->out);
+}
+
+static void print_line(const struct page *page, const char *text)
+{
+	print_cut(page, text);
+	fputc('\n', page->out);
 }
 
 static void print_title(const struct page *page, const char *text)
 {
 	if (page->color)
 		fputs("\033[1m", page->out);
-	print_line(page, text);
-	if (page->color)
-		fputs("\033[0m", page->out);
+	print_cut(page, text);
+	fputs(page->color ? "\033[0m\n" : "\n", page->out);
 }
 
 /* Each character a round; the height is between least and most of what is shown. */
@@ -211,47 +244,105 @@ static void print_head(const struct page *page, const json_t *status)
 	print_title(page, line);
 }
 
-static void print_streams(const struct page *page, const json_t *status)
+/* What a stream is displayed at: only the one that is shown is. */
+static void describe_displayed(const struct top_view *view, const json_t *stream, char *text, size_t size)
 {
-	const json_t *streams = json_object_get(status, "streams");
-	char line[256];
+	const double hz = view->trend[TOP_DISPLAYED_HZ][TOP_TREND - 1];
+	if (!json_is_true(json_object_get(stream, "shown")))
+		snprintf(text, size, "-");
+	else if (isnan(hz))
+		snprintf(text, size, "?");
+	else
+		snprintf(text, size, "%.2f", hz);
+}
+
+static void print_streams(const struct page *page, const struct top_view *view)
+{
+	const json_t *streams = json_object_get(view->status, "streams");
+	char line[512], displayed[32];
 	if (json_array_size(streams) == 0) {
 		print_line(page, "  no stream");
 		return;
 	}
-	print_title(page, "  stream                     size      fps     frames     lost  refused");
+	print_title(page,
+				"  stream                     size  real Hz  displayed     frames     lost  refused  application");
 	for (size_t i = 0; i < json_array_size(streams); i++) {
 		const json_t *stream = json_array_get(streams, i);
-		snprintf(line, sizeof(line), "  %-20.20s %5lldx%-5lld %7.2f %10lld %8lld %8lld", text_of(stream, "client"),
+		describe_displayed(view, stream, displayed, sizeof(displayed));
+		snprintf(line, sizeof(line), "%c %-20.20s %5lldx%-5lld %7.2f %10s %10lld %8lld %8lld  %.64s",
+				 json_is_true(json_object_get(stream, "shown")) ? '>' : ' ', text_of(stream, "client"),
 				 count_of(stream, "width"), count_of(stream, "height"),
-				 json_number_value(json_object_get(stream, "fps")), count_of(stream, "real_frames"),
-				 count_of(stream, "lost_real_frames"), count_of(stream, "refused_frames"));
+				 json_number_value(json_object_get(stream, "fps")), displayed, count_of(stream, "real_frames"),
+				 count_of(stream, "lost_real_frames"), count_of(stream, "refused_frames"),
+				 text_of(stream, "application"));
 		print_line(page, line);
 	}
 }
 
-/* "  passes  analyse 120, warp 240" */
-static void print_counts(const struct page *page, const char *title, const json_t *object)
+/* "  passes  analyse 60/s, warp 120/s": since the round before; in the first, all. */
+static void print_counts(const struct page *page, const char *title, const struct top_view *view,
+						 const char *member_name)
 {
-	char line[512];
+	const double seconds = json_number_value(json_object_get(view->status, "uptime")) -
+						   json_number_value(json_object_get(view->before, "uptime"));
+	const json_t *before = json_object_get(view->before, member_name);
+	json_t *counts = json_incref(json_object_get(view->status, member_name)), *value;
+	char line[1024];
 	size_t used = (size_t)snprintf(line, sizeof(line), "  %-10s", title);
-	const char *separator = "";
-	const char *name;
-	json_t *value, *counts = json_incref((json_t *)(uintptr_t)object);
+	const char *separator = "", *name;
 	json_object_foreach(counts, name, value)
 	{
-		if (used < sizeof(line))
-			used += (size_t)snprintf(line + used, sizeof(line) - used, "%s%.40s %lld", separator, name,
-									 (long long)json_integer_value(value));
+		const long long count = (long long)json_integer_value(value) - count_of(before, name);
+		if (count == 0 || used >= sizeof(line))
+			continue;
+		if (view->before && seconds > 0.0)
+			used += (size_t)snprintf(line + used, sizeof(line) - used, "%s%.40s %.0f/s", separator, name,
+									 (double)count / seconds);
+		else
+			used += (size_t)snprintf(line + used, sizeof(line) - used, "%s%.40s %lld", separator, name, count);
 		separator = ", ";
 	}
 	json_decref(counts);
-	if (*separator)
-		print_line(page, line);
+	print_line(page, line);
 }
 
-static void print_totals(const struct page *page, const json_t *status)
+static void print_governor(const struct page *page, const json_t *status)
 {
+	const json_t *governor = json_object_get(status, "governor"), *settings = json_object_get(status, "settings");
+	char line[256];
+	snprintf(line, sizeof(line), "  governor  %s, level %lld (%s), load %.2f; raised %lld, lowered %lld",
+			 text_of(settings, "governor"), count_of(governor, "level"), text_of(governor, "name"),
+			 json_number_value(json_object_get(governor, "load")), count_of(governor, "raised"),
+			 count_of(governor, "lowered"));
+	print_line(page, line);
+}
+
+/* Those that keys change, and where they come from. */
+static void print_settings(const struct page *page, const json_t *status)
+{
+	static const char *const names[] = {"blur", "compensation", "motion-model", "cell"};
+	const json_t *settings = json_object_get(status, "settings"), *from = json_object_get(status, "configuration");
+	char line[1024];
+	size_t used = (size_t)snprintf(line, sizeof(line), "  settings ");
+	for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++)
+		used += (size_t)snprintf(line + used, sizeof(line) - used, "%s%s %.32s", i ? ", " : " ", names[i],
+								 text_of(settings, names[i]));
+	if (*text_of(status, "profile"))
+		used += (size_t)snprintf(line + used, sizeof(line) - used, "; profile of %.64s", text_of(status, "profile"));
+	for (size_t i = 0; i < json_array_size(json_object_get(from, "asked")) && used < sizeof(line); i++)
+		used +=
+			(size_t)snprintf(line + used, sizeof(line) - used, "%s%.32s",
+							 i ? " " : "; set: ", json_string_value(json_array_get(json_object_get(from, "asked"), i)));
+	print_line(page, line);
+	if (!*text_of(from, "mistake"))
+		return;
+	snprintf(line, sizeof(line), "  mistake   %.400s", text_of(from, "mistake"));
+	print_line(page, line);
+}
+
+static void print_totals(const struct page *page, const struct top_view *view)
+{
+	const json_t *status = view->status;
 	char line[256];
 	snprintf(line, sizeof(line), "  shown     real %lld, in-between %lld, repeated %lld, standby %lld",
 			 count_of(status, "real_frames"), count_of(status, "in_between_frames"),
@@ -261,16 +352,18 @@ static void print_totals(const struct page *page, const json_t *status)
 			 count_of(status, "late_in_betweens"), count_of(status, "late_real_frames"),
 			 count_of(status, "lost_real_frames"), count_of(status, "late_flips"));
 	print_line(page, line);
-	print_counts(page, "passes", json_object_get(status, "passes"));
-	print_counts(page, "left out", json_object_get(status, "left_out"));
+	print_counts(page, "passes", view, "passes");
+	print_counts(page, "left out", view, "left_out");
 }
 
 static void print_lab(const struct page *page, const json_t *lab)
 {
 	static const char *const lines[] = {"marker", "strobe", "photodiode", "trigger", "vsync"};
 	char line[400];
-	if (!json_is_object(lab))
+	if (!json_is_object(lab)) {
+		print_line(page, "  lab       off: no GPIO line, no time points (pursuitd --gpio-line, --latency)");
 		return;
+	}
 	snprintf(line, sizeof(line), "  lab       %s; edges %lld, lost %lld; photons lost %lld, stray %lld; log %lld rows",
 			 json_is_true(json_object_get(lab, "realtime")) ? "real-time" : "NOT real-time", count_of(lab, "edges"),
 			 count_of(lab, "lost_edges"), count_of(lab, "lost_photons"), count_of(lab, "stray_photons"),
@@ -290,8 +383,16 @@ void top_view_print(const struct top_view *view, unsigned columns, bool color, F
 {
 	const struct page page = {out, columns, color};
 	print_head(&page, view->status);
-	print_streams(&page, view->status);
+	print_streams(&page, view);
 	print_figures(&page, view);
-	print_totals(&page, view->status);
+	print_totals(&page, view);
+	print_governor(&page, view->status);
+	print_settings(&page, view->status);
 	print_lab(&page, json_object_get(view->status, "lab"));
+}
+
+void top_view_print_line(unsigned columns, const char *text, FILE *out)
+{
+	const struct page page = {out, columns, false};
+	print_line(&page, text);
 }

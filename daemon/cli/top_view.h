@@ -25,6 +25,8 @@ enum top_figure {
 	TOP_READY_BEFORE,
 	TOP_SUBMIT_TO_FLIP,
 	TOP_SUBMIT_TO_FLIP_99,
+	TOP_ENGINE,
+	TOP_ENGINE_99,
 	TOP_FLIP_TO_EDGE,
 	TOP_FLIP_TO_EDGE_99,
 	TOP_FLIP_TO_PHOTON,
@@ -32,7 +34,7 @@ enum top_figure {
 };
 
 struct top_view {
-	json_t *status;                       /* the newest; owned */
+	json_t *status, *before;              /* the newest, and that of the round before; owned */
 	double trend[TOP_FIGURES][TOP_TREND]; /* the newest last; NAN: not known */
 	uint64_t rounds;
 };
@@ -42,10 +44,14 @@ struct top_view {
  * and the lab's new rows (may be empty).
  */
 void top_view_add(struct top_view *view, json_t *status, const json_t *timeline, const struct latency_table *rows);
+/* A newer status within a round, kept. */
+void top_view_replace_status(struct top_view *view, json_t *status);
 void top_view_finish(struct top_view *view);
 
-/* Lines of at most `columns` characters; colour where the terminal has it. */
+/* Lines of at most `columns` characters; titles are bold with `color`. */
 void top_view_print(const struct top_view *view, unsigned columns, bool color, FILE *out);
+/* One such line: nothing in it that a terminal would obey. */
+void top_view_print_line(unsigned columns, const char *text, FILE *out);
 /* {"now": {figure: value}, "status": ...}; the caller's. */
 json_t *top_view_json(const struct top_view *view);
 

@@ -5,27 +5,30 @@
 #include <inttypes.h>
 #include <poll.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/ioctl.h>
-#include <termios.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "args.h"
+#include "color.h"
 #include "control.h"
-#include "interrupt.h"
+#include "json_out.h"
 #include "latency_fetch.h"
+#include "top_keys.h"
+#include "top_screen.h"
 #include "top_view.h"
 #include "verbs.h"
 
 #define VERB "top"
 #define NO_ROW (UINT64_C(1) << 62)
-#define DEFAULT_COLUMNS 100u
 #define PIPE_COLUMNS 1000u
 
 struct top {
 	struct control control;
 	struct top_view view;
 	uint64_t timeline_from, rows_from; /* numbers of the next rows */
+	bool held;
+	char message[256]; /* what the last key did */
 };
 
 /* ---- asking ---- */
@@ -72,78 +75,91 @@ static int ask_round(struct top *top, struct error *error)
 	return result;
 }
 
+/* What a key has changed is seen at once; the figures go on from round to round. */
+static int ask_status(struct top *top, struct error *error)
+{
+	json_t *status = NULL;
+	const int result = control_ask(&top->control, "status", -1, &status, error);
+	if (result == 0)
+		top_view_replace_status(&top->view, status);
+	return result;
+}
+
 /* ---- the terminal ---- */
 
-static unsigned columns_of_terminal(void)
+static void draw(struct top *top, struct top_screen *screen)
 {
-	struct winsize size;
-	if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 20)
-		return size.ws_col;
-	return isatty(STDOUT_FILENO) ? DEFAULT_COLUMNS : PIPE_COLUMNS;
-}
-
-/* Keys come one by one and unseen. False: standard input is no terminal. */
-static bool grab_keys(struct termios *before)
-{
-	if (!isatty(STDIN_FILENO) || tcgetattr(STDIN_FILENO, before) < 0)
-		return false;
-	struct termios raw = *before;
-	raw.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
-	return tcsetattr(STDIN_FILENO, TCSANOW, &raw) == 0;
-}
-
-/* One write a round: no flicker, few packets on a slow line. */
-static void draw(const struct top *top, bool held)
-{
-	char *text = NULL;
+	char *text = NULL, help[256];
 	size_t size = 0;
 	FILE *out = open_memstream(&text, &size);
 	if (!out)
 		return;
-	fputs("\033[H", out);
-	top_view_print(&top->view, columns_of_terminal(), true, out);
-	fprintf(out, "\033[K\n%s\033[K\n\033[J", held ? "held: space goes on, q quits" : "q quits, space holds");
-	fclose(out);
-	fwrite(text, 1, size, stdout);
-	fflush(stdout);
+	top_keys_describe(help, sizeof(help));
+	top_view_print(&top->view, screen->columns, color_is_wanted(), out);
+	top_view_print_line(screen->columns, top->message, out);
+	top_view_print_line(screen->columns, top->held ? "held: space goes on, q quits" : "space hold  q quit", out);
+	top_view_print_line(screen->columns, help, out);
+	if (fclose(out) == 0)
+		top_screen_draw(screen, text);
 	free(text);
 }
 
-/* The next key within the interval; 0 none. */
-static char wait_for_key(bool keys, uint32_t interval_ms)
+static int press(struct top *top, char key, struct error *error)
 {
-	struct pollfd input = {.fd = keys ? STDIN_FILENO : -1, .events = POLLIN};
-	char key = 0;
-	if (poll(&input, 1, (int)interval_ms) > 0 && read(STDIN_FILENO, &key, 1) <= 0)
-		return 'q';
-	return key;
+	if (key == ' ')
+		top->held ^= true;
+	if (top_keys_press(&top->control, top->view.status, key, top->message, sizeof(top->message)))
+		return ask_status(top, error);
+	return 0;
+}
+
+static uint64_t now_ms(void)
+{
+	struct timespec now;
+	clock_gettime(CLOCK_MONOTONIC, &now);
+	return (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
+}
+
+static int run_screen(struct top *top, struct top_screen *screen, uint32_t interval_ms, struct error *error)
+{
+	uint64_t next_ms = now_ms();
+	int result = 0;
+	while (result == 0) {
+		char key = 0;
+		const uint64_t now = now_ms();
+		if (now >= next_ms) {
+			next_ms = now + interval_ms;
+			result = top->held ? 0 : ask_round(top, error);
+		}
+		if (result < 0)
+			break;
+		draw(top, screen);
+		const enum top_event event = top_screen_wait(screen, (uint32_t)(next_ms - now), &key);
+		if (event == TOP_OVER || (event == TOP_KEY && key == 'q'))
+			break;
+		if (event == TOP_KEY)
+			result = press(top, key, error);
+	}
+	return result;
 }
 
 static int watch(struct top *top, uint32_t interval_ms, struct error *error)
 {
-	struct termios before;
-	const bool keys = grab_keys(&before);
-	bool held = false, over = false;
-	int result = 0;
-	interrupt_watch();
-	fputs("\033[?1049h\033[?25l", stdout);
-	while (!over && !interrupt_seen() && result == 0) {
-		if (!held)
-			result = ask_round(top, error);
-		if (result == 0)
-			draw(top, held);
-		const char key = result == 0 ? wait_for_key(keys, interval_ms) : 0;
-		over = key == 'q';
-		held ^= key == ' ';
-	}
-	fputs("\033[?25h\033[?1049l", stdout);
-	fflush(stdout);
-	if (keys)
-		tcsetattr(STDIN_FILENO, TCSANOW, &before);
+	struct top_screen screen;
+	int result = top_screen_open(&screen, error);
+	if (result == 0)
+		result = run_screen(top, &screen, interval_ms, error);
+	top_screen_close(&screen);
 	return result;
 }
 
 /* ---- the verb ---- */
+
+static unsigned columns_of_terminal(void)
+{
+	struct winsize size;
+	return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : PIPE_COLUMNS;
+}
 
 /* Two rounds, so that there is a moment to speak of. */
 static int once(struct top *top, uint32_t interval_ms, bool as_json, struct error *error)
@@ -155,14 +171,9 @@ static int once(struct top *top, uint32_t interval_ms, bool as_json, struct erro
 	}
 	if (result < 0)
 		return result;
-	if (!as_json) {
-		top_view_print(&top->view, columns_of_terminal(), false, stdout);
-		return 0;
-	}
-	json_t *object = top_view_json(&top->view);
-	json_dumpf(object, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
-	putchar('\n');
-	json_decref(object);
+	if (as_json)
+		return json_out(VERB, top_view_json(&top->view)) == STATUS_DONE ? 0 : error_set(error, -EIO, "nothing printed");
+	top_view_print(&top->view, columns_of_terminal(), color_is_wanted(), stdout);
 	return 0;
 }
 
@@ -182,10 +193,16 @@ int verb_top(int argc, char **argv)
 		.verb = VERB,
 		.usage = "[--once] [--json]",
 		.summary =
-			"Shows live what the running daemon does: rates, phase, latency and its course, what ran and what was\n"
-			"left out, lines of the lab. Latency percentiles of the moment need a daemon with --latency.",
+			"Shows live what the running daemon does: rates, phase, latency and its course, the governor, what ran "
+			"and\n"
+			"what was left out, drops, lines of the lab. Keys change method, blur, boost, motion model, governor and\n"
+			"level from the next real frame on, as `pursuit set` does; u takes all of it back. Only lines that "
+			"changed\n"
+			"are sent, and no faster than the terminal shows them. Latency percentiles of the moment need a daemon\n"
+			"with --latency; without, they are those since its start.",
 		.examples = "  pursuit top\n"
 					"  pursuit top --once\n"
+					"  ssh lab-machine -t pursuit top --interval-ms 2000\n"
 					"  pursuit top --json | jq .now.displayed_hz\n",
 		.rows = rows,
 	};
