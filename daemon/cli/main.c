@@ -66,6 +66,14 @@ static int unknown_verb(const char *name)
 	return STATUS_USAGE;
 }
 
+/* What could not be printed is not done. */
+static int run(const struct verb *verb, int argc, char **argv)
+{
+	const int status = verb->run(argc, argv);
+	const bool written = fflush(stdout) == 0 && !ferror(stdout);
+	return written || status != STATUS_DONE ? status : args_failed(verb->name, "standard output cannot be written");
+}
+
 int main(int argc, char **argv)
 {
 	signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is an error like a full disk */
@@ -88,7 +96,7 @@ int main(int argc, char **argv)
 	}
 	for (const struct verb *verb = verbs; verb->name; verb++) {
 		if (strcmp(verb->name, argv[1]) == 0)
-			return verb->run(argc - 1, argv + 1);
+			return run(verb, argc - 1, argv + 1);
 	}
 	return unknown_verb(argv[1]);
 }

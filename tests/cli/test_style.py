@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""One style for all verbs: each in turn helps, speaks JSON, refuses, and writes no more than text where nobody looks."""
+import json
+import os
+import pty
+import re
+import select
+import signal
+import subprocess
+import time
+
+import common
+
+PURSUITD, EXAMPLE = os.environ["PURSUITD"], os.environ["EXAMPLE_MEMORY"]
+
+# A small piece of work for each verb; IN is a recording, OUT a name of its own, SOCKET a daemon's.
+WORK = {
+    "demo": ["--seconds", "1", "--size", "64x36", "--out", "OUT"],
+    "record": ["OUT", "--scene", "still", "--size", "16x16", "--seconds", "0.05"],
+    "replay": ["IN", "--every", "2"],
+    "report": ["--scenes", "still", "--methods", "hold", "--n", "2", "--sizes", "64x36", "--antialias", "1", "--out", "OUT"],
+    "import": ["OUT", "--color", "FOLDER/c_%04d.png", "--fps", "30"],
+    "export": ["IN", "--color", "OUT_%04d.png"],
+    "check-stream": ["IN"],
+    "latency": ["--socket", "SOCKET"],
+    "doctor": ["--socket", "SOCKET"],
+    "top": ["--once", "--interval-ms", "300", "--socket", "SOCKET"],
+    "get": ["method", "--socket", "SOCKET"],
+    "set": ["blur=off", "--socket", "SOCKET"],
+    "profile": ["--socket", "SOCKET", "--config", "FOLDER/none.conf"],
+    "status": ["--socket", "SOCKET"],
+}
+JSON = {"replay": ["--json", "-"]}
+# What cannot be done, and is told with exit status 1.
+FAILS = {
+    "demo": ["--seconds", "1", "--out", "/dev/null/x"],
+    "record": ["/dev/null/x", "--scene", "still"],
+    "replay": ["/nonexistent"],
+    "report": ["--scenes", "none", "--recordings", "/nonexistent", "--out", "OUT"],
+    "import": ["OUT", "--color", "/nonexistent/c_%d.png", "--fps", "30"],
+    "export": ["/nonexistent", "--color", "OUT_%d.png"],
+    "check-stream": ["/nonexistent"],
+    "latency": ["/nonexistent"],
+    "top": ["--socket", "/nonexistent"],
+    "get": ["--socket", "/nonexistent"],
+    "set": ["blur=off", "--socket", "/nonexistent"],
+    "profile": ["show", "nobody", "--config", "/nonexistent"],
+    "status": ["--socket", "/nonexistent"],
+}
+COLOR = re.compile(r"\x1b\[[0-9;]*m")
+
+
+class Style(common.Case):
+    def setUp(self):
+        super().setUp()
+        self.socket, self.number = self.path("socket"), 0
+        self.recording = self.record("in.pursuit", scene="still", size="16x16", seconds=0.05)
+        self.must("export", self.recording, "--color", self.path("c_%04d.png"))
+        self.log = open(self.path("log"), "w")
+        self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--latency"], stderr=self.log)
+        for _ in range(600):
+            if os.path.exists(self.socket) or self.daemon.poll() is not None:
+                break
+            time.sleep(0.05)
+        self.client = subprocess.Popen([EXAMPLE, "--seconds", "600"], stdout=self.log, stderr=self.log,
+                                       env={**os.environ, "PURSUIT_SOCKET": self.socket})
+        time.sleep(1.5)
+
+    def tearDown(self):
+        self.client.terminate()
+        self.client.wait()
+        self.daemon.send_signal(signal.SIGTERM)
+        self.daemon.wait(60)
+        self.log.close()
+        super().tearDown()
+
+    def verbs(self):
+        return [line.split("\t")[0] for line in self.must("--print-verbs").stdout.splitlines()]
+
+    def words(self, listed):
+        self.number += 1
+        known = {"IN": self.recording, "SOCKET": self.socket, "FOLDER": self.folder, "OUT": self.path(f"out{self.number}")}
+        return [re.sub("^(IN|SOCKET|FOLDER|OUT)", lambda found: known[found.group(1)], word) for word in listed]
+
+    def in_terminal(self, *arguments, **environment):
+        """Output and exit status where somebody looks."""
+        master, slave = pty.openpty()
+        process = subprocess.Popen([common.PURSUIT, *arguments], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave,
+                                   env={**os.environ, "TERM": "xterm", **environment})
+        os.close(slave)
+        text = b""
+        while select.select([master], [], [], 240)[0]:
+            try:
+                text += os.read(master, 65536)
+            except OSError:
+                break
+        os.close(master)
+        return text.decode(), process.wait(240)
+
+    def test_every_verb_is_here(self):
+        self.assertEqual(sorted(self.verbs()), sorted(WORK))
+
+    def test_help(self):
+        for verb in self.verbs():
+            with self.subTest(verb=verb):
+                result = self.must(verb, "--help")
+                self.assertEqual(result.stderr, "")
+                self.assertTrue(result.stdout.startswith(f"usage: pursuit {verb} "))
+                for part in "\noptions\n", "\nexamples\n", "exit status: 0 done, 1 failed, 2 used wrongly", "--json":
+                    self.assertIn(part, result.stdout)
+                self.assertLessEqual(max(map(len, result.stdout.splitlines())), 140)
+                self.assertIn(f"  pursuit {verb}", result.stdout.split("\nexamples\n")[1] + "  pursuitd")
+                text, status = self.in_terminal(verb, "--help")
+                self.assertEqual((text.replace("\r\n", "\n"), status), (result.stdout, 0))
+
+    def test_json_and_nothing_else(self):
+        for verb, listed in WORK.items():
+            with self.subTest(verb=verb):
+                result = self.must(verb, *self.words(listed), *JSON.get(verb, ["--json"]))
+                self.assertIsInstance(json.loads(result.stdout), dict)
+                self.assertNotRegex(result.stdout + result.stderr, "[\x1b\r]")
+
+    def test_text_where_nobody_looks(self):
+        for verb, listed in WORK.items():
+            with self.subTest(verb=verb):
+                result = self.must(verb, *self.words(listed))
+                self.assertNotRegex(result.stdout + result.stderr, "[\x1b\r]")
+
+    def test_terminal_without_color(self):
+        for verb, listed in WORK.items():
+            with self.subTest(verb=verb):
+                text, status = self.in_terminal(verb, *self.words(listed), NO_COLOR="1")
+                self.assertEqual(status, 0, text)
+                self.assertNotRegex(text, COLOR)
+                self.assertNotRegex(self.in_terminal(verb, *self.words(listed), TERM="dumb")[0] if verb != "report" else "",
+                                    COLOR)
+
+    def test_terminal_with_color(self):
+        self.assertRegex(self.in_terminal("doctor")[0], COLOR)
+        self.assertRegex(self.in_terminal("doctor", NO_COLOR="")[0], COLOR)
+
+    def test_wrong_option(self):
+        for verb in self.verbs():
+            for wrong in ["--no-such-thing"], ["-x"], ["--json=perhaps"] if verb != "replay" else ["--json"]:
+                with self.subTest(verb=verb, wrong=wrong):
+                    result = self.must(verb, *self.words(WORK[verb]), *wrong, status=2)
+                    self.assertEqual(result.stdout, "")
+                    self.assertTrue(result.stderr.startswith(f"pursuit {verb}: "), result.stderr)
+                    self.assertTrue(result.stderr.endswith(f"Try `pursuit {verb} --help`.\n"), result.stderr)
+
+    def test_failure(self):
+        for verb, listed in FAILS.items():
+            with self.subTest(verb=verb):
+                result = self.must(verb, *self.words(listed), status=1)
+                self.assertRegex(result.stderr, rf"(?m)^pursuit {verb}: ")
+                self.assertEqual(result.stdout, "")
+
+    def test_full_disk(self):
+        """What could not be written is not done."""
+        for verb, listed in WORK.items():
+            with self.subTest(verb=verb), open("/dev/full", "w") as full:
+                result = subprocess.run([common.PURSUIT, verb, *self.words(listed), *JSON.get(verb, ["--json"])],
+                                        stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
+                self.assertEqual(result.returncode, 1, result.stderr)
+
+
+if __name__ == "__main__":
+    common.main()
