@@ -7,6 +7,7 @@
  */
 #include "tests/test.h"
 
+#include "daemon/engine/gl/executor_gl.h"
 #include "fixture.h"
 #include "on-gpu.h"
 
@@ -138,22 +139,33 @@ static void test_rests(void)
 	fixture_finish(&fixture);
 }
 
-/* A plane that this renderer cannot take is the CPU's, and the report says so. */
-static void test_too_large(void)
+static void check_left_to_the_cpu(const struct fixture *fixture)
 {
-	const struct fixture_spec spec = {64, 48, .motion_format = PURSUIT_FORMAT_RG16F};
 	const struct plan_params params = {.last_phase = 0.5f};
-	const uint32_t most = engine->executor->max_size;
-	struct fixture fixture;
-	fixture_make(&fixture, &spec);
-	fixture_fill(&fixture, FIELD_LAYERS, 1);
-	engine->executor->max_size = 63;
-	CHECK(on_gpu_analyse(engine, &fixture.frame, &params));
-	engine->executor->max_size = most;
+	CHECK(on_gpu_analyse(engine, &fixture->frame, &params));
 	CHECK_INT(engine->report.left_out_count, 1);
 	CHECK_STRING(engine->report.left_out[0].name, "gpu-analysis");
 	CHECK_STRING(engine->report.left_out[0].reason, "size");
 	CHECK(engine->plan.rest == PLAN_MOVES && engine->plan.snapped > 0);
+}
+
+/* What this renderer cannot take is the CPU's, and the report says so: a plane, or the vertices. */
+static void test_too_large(void)
+{
+	const struct fixture_spec spec = {64, 48, .motion_format = PURSUIT_FORMAT_RG16F};
+	struct gl *gl = &gl_of(engine)->context->gl;
+	const uint32_t size = engine->executor->max_size;
+	const int storage = gl->max_storage;
+	struct fixture fixture;
+	fixture_make(&fixture, &spec);
+	fixture_fill(&fixture, FIELD_LAYERS, 1);
+	engine->executor->max_size = 63;
+	check_left_to_the_cpu(&fixture);
+	engine->executor->max_size = size;
+	gl->max_storage = 1900;
+	check_left_to_the_cpu(&fixture);
+	gl->max_storage = storage;
+	CHECK(storage >= 1 << 27);
 	fixture_finish(&fixture);
 }
 

@@ -42,6 +42,8 @@ static int start(struct context *context, struct error *error)
 	if (result == 0 && (context->gl.gles || context->gl.version < 43))
 		return error_set(error, -ENOTSUP, "the context that was brought is GL %d, must be 4.3 or newer",
 						 context->gl.version);
+	context->gl.pixel_format = GL_BGRA;
+	context->gl.pixel_type = GL_UNSIGNED_INT_8_8_8_8_REV;
 	return result;
 }
 

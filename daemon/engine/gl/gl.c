@@ -45,10 +45,12 @@ static void learn_limits(struct gl *gl)
 	gl->max_size = texture;
 	for (int i = 0; i < 2; i++)
 		gl->max_size = viewport[i] < gl->max_size ? viewport[i] : gl->max_size;
-	gl->pixel_format = gl->gles ? GL_RGBA : GL_BGRA;
-	gl->pixel_type = gl->gles ? GL_UNSIGNED_BYTE : GL_UNSIGNED_INT_8_8_8_8_REV;
+	gl->pixel_format = GL_RGBA;
+	gl->pixel_type = GL_UNSIGNED_BYTE;
 	bool functions = gl->GenQueries && gl->DeleteQueries && gl->BeginQuery && gl->EndQuery && gl->GetQueryObjectui64v;
 	gl->compute = gl->DispatchCompute && gl->MemoryBarrier && gl->version >= (gl->gles ? 31 : 43);
+	if (gl->compute)
+		gl->GetIntegerv(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &gl->max_storage);
 	gl->timer_queries = functions && (!gl->gles || gl_has_extension(gl, "GL_EXT_disjoint_timer_query"));
 }
 

@@ -111,8 +111,12 @@ struct gl {
 	int version;  /* 10 x major + minor */
 	int max_size; /* of textures and viewports, pixels */
 	bool timer_queries;
-	bool compute; /* shaders of 4.3 core or ES 3.1 that write to buffers */
-	/* How 4 bytes a pixel go in and out: BGRA, or on GLES the same bytes taken for RGBA. */
+	bool compute;    /* shaders of 4.3 core or ES 3.1 that write to buffers */
+	int max_storage; /* bytes of such a buffer */
+	/*
+	 * How 4 bytes a pixel go in and out: taken for RGBA though they are BGRA, which no pass minds; in a context that
+	 * was brought as what they are, since others see the pictures there.
+	 */
 	GLenum pixel_format, pixel_type;
 };
 

@@ -151,6 +151,11 @@ static size_t first_vertex(const struct plan_job *job)
 	return FOUND_HEAD + job->tiles;
 }
 
+static size_t found_bytes(const struct plan_job *job)
+{
+	return 4 * first_vertex(job) + sizeof(struct plan_vertex) * job->columns * job->rows;
+}
+
 static void send_job(struct engine *engine, const struct plan_job *job)
 {
 	struct analysis *analysis = &gl_of(engine)->analysis;
@@ -190,7 +195,7 @@ static int make_room(struct engine *engine, const struct plan_job *job, struct e
 {
 	struct analysis *analysis = &gl_of(engine)->analysis;
 	const struct gl *gl = table_of(engine);
-	const size_t bytes = 4 * first_vertex(job) + sizeof(struct plan_vertex) * job->columns * job->rows;
+	const size_t bytes = found_bytes(job);
 	int result = reserve_nothing(analysis, 4 * first_vertex(job), error);
 	if (result < 0)
 		return result;
@@ -208,7 +213,7 @@ static int make_room(struct engine *engine, const struct plan_job *job, struct e
 static int take_found(struct engine *engine, const struct plan_job *job, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
-	const size_t bytes = 4 * first_vertex(job) + sizeof(struct plan_vertex) * job->columns * job->rows;
+	const size_t bytes = found_bytes(job);
 	gl->MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 	const uint32_t *words = gl->MapBufferRange(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)bytes, GL_MAP_READ_BIT);
 	if (!words)
@@ -244,22 +249,21 @@ static int analyse(struct engine *engine, const struct plan_job *job, struct err
 
 static bool fits(const struct engine *engine, int index)
 {
-	const struct pursuit_plane *plane = &engine->job.frame->header.planes[index];
 	const uint32_t most = engine->executor->max_size;
+	if (index < 0)
+		return true;
+	const struct pursuit_plane *plane = &engine->job.frame->header.planes[index];
 	return plane->width <= most && plane->height <= most;
 }
 
 /* Why the CPU has to do it, NULL if it has not. */
-static const char *why_not(const struct engine *engine)
+static const char *why_not(const struct engine *engine, const struct plan_job *job)
 {
-	const struct pursuit_frame_header *header = &engine->job.frame->header;
-	if (!table_of(engine)->compute)
+	const struct gl *gl = table_of(engine);
+	if (!gl->compute)
 		return "no-compute";
-	for (uint32_t i = 0; i < header->plane_count && i < PURSUIT_MAX_PLANES; i++)
-		if ((header->planes[i].role == PURSUIT_ROLE_MOTION || header->planes[i].role == PURSUIT_ROLE_DEPTH) &&
-			!fits(engine, (int)i))
-			return "size";
-	return NULL;
+	bool small = fits(engine, job->motion_plane) && fits(engine, job->depth_plane);
+	return small && found_bytes(job) <= (size_t)gl->max_storage ? NULL : "size";
 }
 
 static int run(struct engine *engine, struct error *error)
@@ -267,16 +271,17 @@ static int run(struct engine *engine, struct error *error)
 	/* By itself the CPU does it: the planes come in its memory, and it is quicker than the way up and back. */
 	if (engine->params.analysis != ENGINE_ANALYSIS_GPU)
 		return pass_analyse.run(engine, error);
-	const char *reason = why_not(engine);
-	if (reason) {
-		report_leave_out(&engine->report, "gpu-analysis", reason);
-		return pass_analyse.run(engine, error);
-	}
 	const struct plan_params params = analyse_params(engine);
 	struct plan_job job;
 	int result = 0;
-	if (plan_job_begin(&engine->plan, engine->job.frame, &params, &job))
+	if (plan_job_begin(&engine->plan, engine->job.frame, &params, &job)) {
+		const char *reason = why_not(engine, &job);
+		if (reason) {
+			report_leave_out(&engine->report, "gpu-analysis", reason);
+			return pass_analyse.run(engine, error);
+		}
 		result = analyse(engine, &job, error);
+	}
 	return result < 0 ? result : analyse_bend(engine, &params, error);
 }
 
