@@ -4,7 +4,6 @@
 #include "tests/engine/picture.h"
 
 #include <math.h>
-#include <png.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -201,10 +200,4 @@ void picture_draw_layers(const struct picture *picture, double t)
 void picture_draw_discs(const struct picture *picture, double t)
 {
 	draw(picture, t, 0.0, false);
-}
-
-bool picture_write_png(const char *path, const uint8_t *bgra, uint32_t width, uint32_t height)
-{
-	png_image image = {.version = PNG_IMAGE_VERSION, .width = width, .height = height, .format = PNG_FORMAT_BGRA};
-	return png_image_write_to_file(&image, path, 0, bgra, 0, NULL);
 }

@@ -162,8 +162,8 @@ static void check_covered(struct engine *engine, double phase)
 
 static void test_covered(void)
 {
-	static const char *const levels[] = {"plain", "avx2", "avx512"};
-	for (size_t k = 0; k < 3; k++) {
+	static const char *const levels[] = {"plain", "avx2", "avx512", "neon"};
+	for (size_t k = 0; k < sizeof(levels) / sizeof(levels[0]); k++) {
 		struct engine *engine = make(levels[k], 2);
 		if (!engine)
 			continue;
@@ -202,7 +202,7 @@ static void test_equal_bits(void)
 	static const struct {
 		const char *level;
 		uint32_t threads;
-	} others[] = {{"plain", 3}, {"avx2", 1}, {"avx512", 2}, {NULL, 8}};
+	} others[] = {{"plain", 3}, {"avx2", 1}, {"avx512", 2}, {"neon", 2}, {NULL, 8}};
 	struct engine *plain = make("plain", 1);
 	CHECK(plain != NULL);
 	for (size_t k = 0; k < sizeof(others) / sizeof(others[0]); k++) {

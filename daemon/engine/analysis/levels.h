@@ -19,6 +19,7 @@ enum plan_level {
 	PLAN_LEVEL_PLAIN = 0, /* what the compiler makes of plain C for the base machine (SSE2, NEON) */
 	PLAN_LEVEL_AVX2,      /* with F16C */
 	PLAN_LEVEL_AVX512,    /* foundation only */
+	PLAN_LEVEL_NEON,      /* 64-bit ARM */
 	PLAN_LEVEL_COUNT,
 };
 

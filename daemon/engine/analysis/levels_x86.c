@@ -24,6 +24,7 @@ const struct plan_kernels *plan_level_kernels(enum plan_level level)
 		return __builtin_cpu_supports("avx2") && has_f16c() ? &plan_kernels_avx2 : NULL;
 	case PLAN_LEVEL_AVX512:
 		return __builtin_cpu_supports("avx512f") && has_f16c() ? &plan_kernels_avx512 : NULL;
+	case PLAN_LEVEL_NEON:
 	case PLAN_LEVEL_COUNT:
 	default:
 		return NULL;

@@ -18,6 +18,7 @@ enum cpu_level {
 	CPU_LEVEL_PLAIN = 0, /* what the compiler makes of plain C for the base machine */
 	CPU_LEVEL_AVX2,
 	CPU_LEVEL_AVX512, /* foundation, byte and word, vector length */
+	CPU_LEVEL_NEON,   /* 64-bit ARM */
 	CPU_LEVEL_COUNT,
 };
 

@@ -19,6 +19,7 @@ const struct cpu_kernels *cpu_level_kernels(enum cpu_level level)
 					   __builtin_cpu_supports("avx512vl")
 				   ? &cpu_kernels_avx512
 				   : NULL;
+	case CPU_LEVEL_NEON:
 	case CPU_LEVEL_COUNT:
 	default:
 		return NULL;
