@@ -128,5 +128,21 @@ class PythonClient(common.Case):
         self.assertIn("no daemon answers", error)
 
 
+class Guide(unittest.TestCase):
+    def test_lines_that_each_step_adds(self):
+        """As docs/integration.md says them."""
+        examples = os.path.dirname(os.environ["PYTHON_CLIENT"])
+        with open(os.path.join(examples, "../../docs/integration.md"), encoding="utf-8") as page:
+            text = page.read()
+        said = [int(number) for number in re.findall(r"^\| [1-4] \| .* \| (\d+) \|$", text, re.M)]
+        added = []
+        for step in range(4):
+            steps = [os.path.join(examples, f"integration/step-{step + i}.c") for i in (0, 1)]
+            difference = subprocess.run(["diff", *steps], capture_output=True, text=True).stdout
+            added.append(len(re.findall("^>", difference, re.M)))
+        self.assertEqual(said, added)
+        self.assertIn(f"\n{sum(added)} lines in all", text)
+
+
 if __name__ == "__main__":
     common.main()

@@ -70,7 +70,7 @@ class Install(unittest.TestCase):
             "/pkgconfig/libpursuit.pc", "/doc/pursuit/LICENSE", "/doc/pursuit/CHANGELOG.md", "/doc/pursuit/README.md",
             "/bash-completion/completions/pursuit", "/zsh/site-functions/_pursuit",
             "/fish/vendor_completions.d/pursuit.fish",
-            "/doc/pursuit/examples/example-memory.c", "/doc/pursuit/pictures/mistakes.png",
+            "/doc/pursuit/examples/example-memory.c", "/doc/pursuit/pictures/mistake-sign.png",
             "/lib/systemd/system/pursuit.service", "/lib/systemd/system/pursuit.socket",
             "/lib/systemd/user/pursuit.service", "/lib/systemd/user/pursuit.socket", "/lib/sysusers.d/pursuit.conf",
             "/lib/tmpfiles.d/pursuit.conf", "/udev/rules.d/70-pursuit.rules",
