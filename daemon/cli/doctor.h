@@ -19,7 +19,7 @@ enum doctor_state {
 
 struct doctor_finding {
 	enum doctor_state state;
-	const char *area; /* static: "renderer", "display", "gpio", "scheduling", "memory", "daemon" */
+	const char *area; /* static: "renderer", "display", "gpio", "scheduling", "service", "socket", "daemon" */
 	char text[240];
 	char mend[200]; /* what to do, a command where there is one; "" nothing */
 };
@@ -30,7 +30,7 @@ struct doctor {
 	const char *system; /* folder in front of /sys and /dev, "" for the real ones; for tests */
 };
 
-/* mend may be NULL. More findings than fit are dropped. */
+/* mend: a command; NULL only for what works, or is none of its business. More findings than fit are dropped. */
 __attribute__((format(printf, 5, 6))) void doctor_add(struct doctor *doctor, enum doctor_state state, const char *area,
 													  const char *mend, const char *format, ...);
 
@@ -38,6 +38,7 @@ void doctor_look_at_renderers(struct doctor *doctor);
 void doctor_look_at_displays(struct doctor *doctor);
 void doctor_look_at_gpio(struct doctor *doctor);
 void doctor_look_at_scheduling(struct doctor *doctor);
+void doctor_look_at_service(struct doctor *doctor);
 /* socket NULL: the usual one. */
 void doctor_look_at_daemon(struct doctor *doctor, const char *socket);
 

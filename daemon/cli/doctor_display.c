@@ -88,7 +88,7 @@ static void look_at_connector(struct doctor *doctor, const char *folder, const c
 		doctor_add(doctor, DOCTOR_WORKS, AREA, NULL, "%s: %ux%u at %.2f Hz", name, width, height, hz);
 	else if (hz > 0.0)
 		doctor_add(doctor, DOCTOR_LIMIT, AREA,
-				   "look into the display's menu for a game or high-refresh mode, and at the cable",
+				   "xrandr --output NAME --rate 120, if xrandr lists it; else the display's menu, or another cable",
 				   "%s: its fastest detailed timing is %ux%u at %.2f Hz; a CTA or DisplayID mode may be faster", name,
 				   width, height, hz);
 	else

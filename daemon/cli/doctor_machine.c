@@ -10,17 +10,16 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-#include "control.h"
 #include "daemon/engine/engine.h"
 #include "doctor.h"
 
-static void look_at_renderer(struct doctor *doctor, enum engine_context_kind kind, const char *option)
+static void look_at_renderer(struct doctor *doctor, enum engine_context_kind kind, const char *option, const char *mend)
 {
 	const struct engine_params params = {.context = kind};
 	struct error error = {""};
 	struct engine *engine = engine_create(&params, &error);
 	if (!engine) {
-		doctor_add(doctor, kind == ENGINE_CONTEXT_AUTO ? DOCTOR_FAILS : DOCTOR_NOTE, "renderer", NULL,
+		doctor_add(doctor, kind == ENGINE_CONTEXT_AUTO ? DOCTOR_FAILS : DOCTOR_NOTE, "renderer", mend,
 				   "--context %s: %s", option, error.text);
 		return;
 	}
@@ -32,10 +31,11 @@ static void look_at_renderer(struct doctor *doctor, enum engine_context_kind kin
 
 void doctor_look_at_renderers(struct doctor *doctor)
 {
-	look_at_renderer(doctor, ENGINE_CONTEXT_AUTO, "auto");
-	look_at_renderer(doctor, ENGINE_CONTEXT_CPU, "cpu");
-	look_at_renderer(doctor, ENGINE_CONTEXT_EGL_SURFACELESS, "egl");
-	look_at_renderer(doctor, ENGINE_CONTEXT_OSMESA, "osmesa");
+	look_at_renderer(doctor, ENGINE_CONTEXT_AUTO, "auto", "pursuitd --context cpu, which needs no GL");
+	look_at_renderer(doctor, ENGINE_CONTEXT_CPU, "cpu", NULL);
+	look_at_renderer(doctor, ENGINE_CONTEXT_EGL_SURFACELESS, "egl",
+					 "sudo apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri");
+	look_at_renderer(doctor, ENGINE_CONTEXT_OSMESA, "osmesa", "sudo apt-get install libosmesa6");
 }
 
 void doctor_look_at_gpio(struct doctor *doctor)
@@ -75,40 +75,20 @@ void doctor_look_at_scheduling(struct doctor *doctor)
 	cpu_set_t cpus;
 	int major = 0, minor = 0;
 	if (sched_getaffinity(0, sizeof(cpus), &cpus) == 0)
-		doctor_add(doctor, CPU_COUNT(&cpus) > 1 ? DOCTOR_WORKS : DOCTOR_LIMIT, "scheduling", NULL,
+		doctor_add(doctor, CPU_COUNT(&cpus) > 1 ? DOCTOR_WORKS : DOCTOR_LIMIT, "scheduling",
+				   CPU_COUNT(&cpus) > 1 ? NULL : "taskset -cp 0-$(($(nproc --all) - 1)) $$, or a machine with more",
 				   "%d processors; without a GPU the game and the daemon share them", CPU_COUNT(&cpus));
 	if (uname(&system) == 0 && sscanf(system.release, "%d.%d", &major, &minor) == 2) {
 		if (major > 6 || (major == 6 && minor >= 12))
 			doctor_add(doctor, DOCTOR_WORKS, "scheduling", NULL, "Linux %.60s gives short slices to the render thread",
 					   system.release);
 		else
-			doctor_add(doctor, DOCTOR_LIMIT, "scheduling", "Linux 6.12 or later, or real-time priority",
+			doctor_add(doctor, DOCTOR_LIMIT, "scheduling",
+					   "sudo apt-get install -t bookworm-backports linux-image-amd64, or any Linux from 6.12 on",
 					   "Linux %.60s: the render thread may wait milliseconds behind a busy game", system.release);
 	}
 	look_at_limit(doctor, RLIMIT_NICE, 23, "a better than ordinary priority",
-				  "a line '@pursuit - nice -3' in /etc/security/limits.d/pursuit.conf");
+				  "echo '@pursuit - nice -3' | sudo tee -a /etc/security/limits.d/pursuit.conf, then log in anew");
 	look_at_limit(doctor, RLIMIT_RTPRIO, 20, "real-time priority (of the thread that sets GPIO lines)",
-				  "a line '@pursuit - rtprio 20' in /etc/security/limits.d/pursuit.conf");
-}
-
-void doctor_look_at_daemon(struct doctor *doctor, const char *socket)
-{
-	struct control control;
-	struct error error = {""};
-	json_t *reply = NULL;
-	if (control_open(&control, socket, &error) < 0) {
-		doctor_add(doctor, DOCTOR_NOTE, "daemon", "pursuitd, or systemctl --user start pursuitd.socket", "%s",
-				   error.text);
-		return;
-	}
-	if (control_ask(&control, "status", -1, &reply, &error) == 0) {
-		const json_t *output = json_array_get(json_object_get(reply, "outputs"), 0);
-		const char *presenter = json_string_value(json_object_get(output, "presenter"));
-		doctor_add(doctor, DOCTOR_WORKS, "daemon", NULL, "it runs and answers%s%s", presenter ? ", presenter " : "",
-				   presenter ? presenter : "");
-		json_decref(reply);
-	} else {
-		doctor_add(doctor, DOCTOR_FAILS, "daemon", "stop it, start it again, and look at its log", "%s", error.text);
-	}
-	control_close(&control);
+				  "echo '@pursuit - rtprio 20' | sudo tee -a /etc/security/limits.d/pursuit.conf, then log in anew");
 }

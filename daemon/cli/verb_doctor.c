@@ -3,6 +3,7 @@
 
 /* pursuit doctor: what works on this machine, what does not, and what mends it. */
 
+#include <assert.h>
 #include <jansson.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -21,6 +22,7 @@ void doctor_add(struct doctor *doctor, enum doctor_state state, const char *area
 				...)
 {
 	va_list arguments;
+	assert(state < DOCTOR_LIMIT || (mend && *mend));
 	if (doctor->count == DOCTOR_FINDINGS)
 		return;
 	struct doctor_finding *finding = &doctor->findings[doctor->count++];
@@ -68,7 +70,8 @@ int verb_doctor(int argc, char **argv)
 	const struct args args = {
 		.verb = VERB,
 		.usage = "[--json]",
-		.summary = "Looks at this machine: renderers, displays and their rates, GPIO chips, priorities, the daemon.\n"
+		.summary = "Looks at this machine: renderers, displays and their rates, GPIO chips, priorities, units of "
+				   "systemd, the socket, the daemon.\n"
 				   "Says in plain words what works and what mends the rest.",
 		.status = "something that every use needs does not work",
 		.examples = "  pursuit doctor\n",
@@ -82,6 +85,7 @@ int verb_doctor(int argc, char **argv)
 	doctor_look_at_displays(&doctor);
 	doctor_look_at_gpio(&doctor);
 	doctor_look_at_scheduling(&doctor);
+	doctor_look_at_service(&doctor);
 	doctor_look_at_daemon(&doctor, socket);
 	if (json)
 		status = print_json(&doctor);

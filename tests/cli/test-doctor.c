@@ -6,7 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include "daemon/cli/doctor.h"
@@ -107,10 +109,73 @@ static void test_system(void)
 	CHECK(system(command) == 0);
 }
 
+static const char *mend_of(const struct doctor *doctor, const char *text)
+{
+	for (uint32_t i = 0; i < doctor->count; i++)
+		if (strstr(doctor->findings[i].text, text))
+			return doctor->findings[i].mend;
+	return "";
+}
+
+/* Units that are not there, there, and enabled: each with the command that comes next. */
+static void test_units(void)
+{
+	char root[] = "/tmp/pursuit-doctor-XXXXXX";
+	CHECK(mkdtemp(root));
+	struct doctor doctor = {.system = root};
+	doctor_look_at_service(&doctor);
+	CHECK(found(&doctor, DOCTOR_NOTE, "systemd does not run here"));
+	static const char *const folders[] = {"run", "run/systemd", "run/systemd/system",
+										  "etc", "etc/systemd", "etc/systemd/user"};
+	for (size_t i = 0; i < sizeof(folders) / sizeof(folders[0]); i++)
+		make_folder(root, folders[i]);
+	doctor.count = 0;
+	doctor_look_at_service(&doctor);
+	CHECK(found(&doctor, DOCTOR_NOTE, "the user units of systemd are not installed"));
+	CHECK(strstr(mend_of(&doctor, "the user units of systemd are not"), "meson install"));
+	write_file(root, "etc/systemd/user/pursuit.socket", "", 0);
+	doctor.count = 0;
+	doctor_look_at_service(&doctor);
+	CHECK_STRING(mend_of(&doctor, "the user units are installed, but"), "systemctl --user enable --now pursuit.socket");
+	make_folder(root, "etc/systemd/user/sockets.target.wants");
+	write_file(root, "etc/systemd/user/sockets.target.wants/pursuit.socket", "", 0);
+	doctor.count = 0;
+	doctor_look_at_service(&doctor);
+	CHECK(found(&doctor, DOCTOR_WORKS, "the user units are installed, and pursuit.socket is enabled"));
+	CHECK(found(&doctor, DOCTOR_NOTE, "the system units of systemd are not installed"));
+	char command[640];
+	snprintf(command, sizeof(command), "rm -r '%s'", root);
+	CHECK(system(command) == 0);
+}
+
+/* A socket that nobody listens at, a file that is none, and nothing. */
+static void test_socket(void)
+{
+	char path[] = "/tmp/pursuit-doctor-XXXXXX";
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	struct doctor doctor = {.system = ""};
+	CHECK(mkdtemp(path));
+	snprintf(address.sun_path, sizeof(address.sun_path), "%s/socket", path);
+	doctor_look_at_daemon(&doctor, address.sun_path);
+	CHECK(doctor.count == 1 && doctor.findings[0].state == DOCTOR_NOTE);
+	CHECK(strstr(doctor.findings[0].mend, "systemctl --user start pursuit.socket"));
+	const int fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+	CHECK(bind(fd, (const struct sockaddr *)&address, sizeof(address)) == 0);
+	doctor.count = 0;
+	doctor_look_at_daemon(&doctor, address.sun_path);
+	CHECK(found(&doctor, DOCTOR_LIMIT, "a daemon that is gone"));
+	CHECK_STRING(doctor.findings[0].mend, "pursuitd");
+	close(fd);
+	unlink(address.sun_path);
+	rmdir(path);
+}
+
 int main(void)
 {
 	RUN(test_edid);
 	RUN(test_random_edid);
 	RUN(test_system);
+	RUN(test_units);
+	RUN(test_socket);
 	return test_result();
 }

@@ -16,7 +16,11 @@ class Settings(common.Case):
         super().setUp()
         self.socket = self.path("socket")
         self.log = open(self.path("log"), "w+")
-        self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--method", "hold"], stderr=self.log)
+        self.file = self.path("config")
+        with open(self.file, "w"):
+            pass
+        self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--method", "hold", "--config", self.file],
+                                       stderr=self.log)
         for _ in range(600):
             if os.path.exists(self.socket) or self.daemon.poll() is not None:
                 break
@@ -62,6 +66,22 @@ class Settings(common.Case):
         self.assertEqual(json.loads(changed), {"cell": "32"})
         changed = self.must("set", "--json", "--undo", "cell", "--socket", self.socket).stdout
         self.assertEqual(json.loads(changed), {"cell": "8"})
+
+    def test_doctor_sees_the_mistake(self):
+        def look():
+            report = json.loads(self.must("doctor", "--json", "--socket", self.socket).stdout)["findings"]
+            for finding in report:
+                self.assertTrue(finding["mend"] or finding["state"] in ("works", "note"), finding)
+            return [(finding["state"], finding["mend"]) for finding in report if finding["area"] == "daemon"]
+
+        self.assertEqual([state for state, _ in look()], ["works", "works"])
+        with open(self.file, "w") as out:
+            out.write("cell = 16\ncell = none\n")
+        for _ in range(200):
+            if look()[1][0] != "works":
+                break
+            time.sleep(0.05)
+        self.assertEqual(look()[1], ("limit", f"${{EDITOR:-vi}} +2 {self.file}"))
 
     def test_no_daemon(self):
         for verb in (["get"], ["set", "cell=8"]):
