@@ -6,11 +6,12 @@
  * in-betweens at a time, tiny pictures, each queued for its vblank. Who checks
  * it watches the kernel's tracepoints, not this program.
  *
- *   rig-lab [--flips F] [--pull PULL_FILE TRUTH_FILE] [--wire PULL_FILE TRUTH_FILE PERIOD_NS] [--SETTING VALUE]...
+ *   rig-lab [--flips F] [--pull PULL_FILE TRUTH_FILE] [--wire PULL_FILE TRUTH_FILE PERIOD_NS] [--bare]
+ *           [--SETTING VALUE]...
  *
- * Prints the lab's status as JSON, with "flips" and "cpu_us_per_flip" (of all
- * threads). With --pull it plays the photodiode too (rig-pull.h), with --wire
- * the vsync of a display (rig-wire.h).
+ * Prints the lab's status as JSON, with "flips", "cpu_us_per_flip" (of all
+ * threads) and "threads" (of each; rig-cost.h, also for --bare). With --pull it plays the photodiode too (rig-pull.h),
+ * with --wire the vsync of a display (rig-wire.h).
  */
 #include <errno.h>
 #include <inttypes.h>
@@ -21,6 +22,7 @@
 #include "daemon/lab/lab.h"
 #include "daemon/options.h"
 #include "daemon/present/presenter.h"
+#include "tests/lab/rig-cost.h"
 #include "tests/lab/rig-pull.h"
 #include "tests/lab/rig-wire.h"
 #include "tests/test.h"
@@ -41,6 +43,9 @@ struct rig {
 	struct rig_wire *wire;
 	const char *wire_path, *wire_truth;
 	uint64_t wire_ns;
+	struct rig_cost *bare;
+	bool bare_wanted;
+	json_t *threads;
 	uint64_t flips_wanted, first_vblank;
 	pthread_mutex_t lock;
 	pthread_cond_t wake;
@@ -53,6 +58,7 @@ static void on_flip(void *data, const struct presenter_flip *flip)
 	struct rig *rig = data;
 	lab_flip(rig->lab, flip);
 	rig_pull_flip(rig->pull, flip);
+	rig_cost_flip(rig->bare);
 	pthread_mutex_lock(&rig->lock);
 	rig->flip = *flip;
 	rig->flips++;
@@ -122,6 +128,7 @@ static void report(struct rig *rig)
 	getrusage(RUSAGE_SELF, &usage);
 	const double cpu = (double)(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) * 1e6 +
 					   (double)(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+	json_object_set_new(status, "threads", rig->threads);
 	json_object_set_new(status, "flips", json_integer((json_int_t)rig->flips));
 	json_object_set_new(status, "first_vblank", json_integer((json_int_t)rig->first_vblank));
 	json_object_set_new(status, "cpu_us_per_flip", json_real(cpu / (double)rig->flips));
@@ -148,6 +155,10 @@ static int parse(struct rig *rig, int argc, char **argv, struct error *error)
 			rig->wire_path = argv[++i];
 			rig->wire_truth = argv[++i];
 			rig->wire_ns = strtoull(argv[++i], NULL, 10);
+			continue;
+		}
+		if (strcmp(argv[i], "--bare") == 0) {
+			rig->bare_wanted = true;
 			continue;
 		}
 		const int taken = settings_argument(&rig->settings, LAB_GROUPS, argc, argv, &i, error);
@@ -186,6 +197,8 @@ static int start(struct rig *rig, struct error *error)
 		return error_set(error, -EIO, "%s or %s cannot be opened", rig->pull_path, rig->truth_path);
 	if (rig->wire_path && !(rig->wire = rig_wire_create(&rig->clock, rig->wire_path, rig->wire_truth, rig->wire_ns)))
 		return error_set(error, -EIO, "%s or %s cannot be opened", rig->wire_path, rig->wire_truth);
+	if (rig->bare_wanted && !(rig->bare = rig_cost_create(rig->settings.lab.priority)))
+		return error_set(error, -EAGAIN, "no bare thread");
 	rig->presenter = presenter_create(rig->settings.present, &params, error);
 	return rig->presenter ? 0 : -1;
 }
@@ -202,7 +215,9 @@ int main(int argc, char **argv)
 	rig.presenter->impl->pause(rig.presenter);
 	/* Rows settle, light comes. */
 	clock_wait_until(&rig.clock, clock_now(&rig.clock) + 1500000000);
+	rig.threads = rig_cost_threads(rig.flips);
 	presenter_destroy(&rig.presenter);
+	rig_cost_destroy(&rig.bare);
 	rig_pull_destroy(&rig.pull);
 	rig_wire_destroy(&rig.wire);
 	report(&rig);
