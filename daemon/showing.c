@@ -3,7 +3,7 @@
 
 #include "daemon/showing.h"
 
-#include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 void showing_init(struct showing *showing, struct stats *stats)
@@ -102,7 +102,7 @@ static void count_due(struct showing *showing, const struct presenter_flip *flip
 	stats->vblanks_on_time += on_time && !flip->late;
 	stats->late_flips += flip->late;
 	stats->active_ns += before && flip->flip_ns > before ? flip->flip_ns - before : (uint64_t)showing->period_ns;
-	stats_spread_add(&stats->flip_error_ms, fabs((double)(int64_t)(flip->flip_ns - flip->target_ns)) / 1e6);
+	histogram_add(&stats->spans.flip_error, llabs((int64_t)(flip->flip_ns - flip->target_ns)));
 	showing->last_flip_ns = flip->flip_ns;
 }
 
@@ -116,7 +116,7 @@ static void count_first_flip(struct showing *showing, struct showing_frame *fram
 	report->vblank = flip->vblank;
 	showing->stats->real_frames++;
 	if (report->submit_ns != 0 && flip->flip_ns > report->submit_ns)
-		stats_spread_add(&showing->stats->submit_to_flip_ms, (double)(flip->flip_ns - report->submit_ns) / 1e6);
+		histogram_add(&showing->stats->spans.submit_to_flip, (int64_t)(flip->flip_ns - report->submit_ns));
 }
 
 /* A picture that was queued for this vblank came to be shown. */

@@ -7,32 +7,12 @@
 #include <stddef.h>
 #include <string.h>
 
-#define SMALLEST 0.001
-#define CLASS_RATIO 1.01
+#define SPANS_ALWAYS 64u
+#define SPANS_ROWS 8u
 
-void stats_spread_add(struct stats_spread *spread, double value)
+double stats_percentile_ms(const struct histogram *histogram, double share)
 {
-	double index = value > SMALLEST ? log(value / SMALLEST) / log(CLASS_RATIO) : 0.0;
-	if (!(index >= 0.0))
-		index = 0.0;
-	if (index > STATS_CLASSES - 1)
-		index = STATS_CLASSES - 1;
-	spread->classes[(uint32_t)index]++;
-	spread->count++;
-}
-
-double stats_spread_percentile(const struct stats_spread *spread, double share)
-{
-	const double wanted = share * (double)spread->count;
-	uint64_t seen = 0;
-	if (spread->count == 0)
-		return 0.0;
-	for (uint32_t i = 0; i < STATS_CLASSES; i++) {
-		seen += spread->classes[i];
-		if (seen > 0 && (double)seen >= wanted)
-			return SMALLEST * pow(CLASS_RATIO, i + 0.5);
-	}
-	return SMALLEST * pow(CLASS_RATIO, STATS_CLASSES);
+	return histogram_percentile(histogram, share) / 1e6;
 }
 
 const char *stats_show_name(enum stats_show show)
@@ -55,7 +35,8 @@ static void add_name(struct stats_name *names, uint32_t *count, const char *name
 
 void stats_add_report(struct stats *stats, const struct engine_report *report)
 {
-	stats_spread_add(&stats->engine_ms, report->total_ms);
+	if (isfinite(report->total_ms))
+		histogram_add(&stats->spans.engine, (int64_t)(fmax(fmin(report->total_ms, 1e9), 0.0) * 1e6));
 	stats->engine_bytes = report->memory_bytes + report->plan_bytes;
 	for (uint32_t i = 0; i < report->pass_count && i < ENGINE_MAX_PASSES; i++)
 		add_name(stats->passes, &stats->pass_count, report->passes[i].name, report->passes[i].runs);
@@ -75,7 +56,11 @@ void stats_publish(const struct stats *stats, struct stats *copy)
 		first = stats->timeline_count - STATS_TIMELINE;
 	for (uint64_t i = first; i < stats->timeline_count; i++)
 		copy->timeline[i % STATS_TIMELINE] = stats->timeline[i % STATS_TIMELINE];
-	memcpy(copy, stats, offsetof(struct stats, timeline));
+	memcpy(copy, stats, offsetof(struct stats, spans));
+	if (stats->timeline_count > SPANS_ALWAYS && stats->timeline_count - copy->spans_count < SPANS_ROWS)
+		return;
+	copy->spans = stats->spans;
+	copy->spans_count = stats->timeline_count;
 }
 
 /* ---- JSON ---- */
@@ -91,10 +76,10 @@ static double rounded(double value)
 	return round(value * 1000.0) / 1000.0;
 }
 
-static json_t *spread_json(const struct stats_spread *spread)
+static json_t *span_json(const struct histogram *histogram)
 {
-	return json_pack("{s:f, s:f}", "p50", rounded(stats_spread_percentile(spread, 0.50)), "p99",
-					 rounded(stats_spread_percentile(spread, 0.99)));
+	return json_pack("{s:f, s:f}", "p50", rounded(stats_percentile_ms(histogram, 0.50)), "p99",
+					 rounded(stats_percentile_ms(histogram, 0.99)));
 }
 
 static json_t *names_json(const struct stats_name *names, uint32_t count)
@@ -164,9 +149,9 @@ json_t *stats_json(const struct stats *stats)
 		object, "on_time",
 		json_real(stats->vblanks_due ? (double)stats->vblanks_on_time / (double)stats->vblanks_due : 0.0));
 	json_object_set_new(object, "vblank_ms", json_real(round(stats->vblank_ns) / 1e6));
-	json_object_set_new(object, "engine_ms", spread_json(&stats->engine_ms));
-	json_object_set_new(object, "submit_to_flip_ms", spread_json(&stats->submit_to_flip_ms));
-	json_object_set_new(object, "flip_error_ms", spread_json(&stats->flip_error_ms));
+	json_object_set_new(object, "engine_ms", span_json(&stats->spans.engine));
+	json_object_set_new(object, "submit_to_flip_ms", span_json(&stats->spans.submit_to_flip));
+	json_object_set_new(object, "flip_error_ms", span_json(&stats->spans.flip_error));
 	json_object_set_new(object, "flip_time_sources", time_sources_json(stats));
 	json_object_set_new(object, "governor", governor_json(&stats->governor));
 	json_object_set_new(object, "passes", names_json(stats->passes, stats->pass_count));

@@ -15,22 +15,8 @@
 
 #include "daemon/engine/engine.h"
 #include "daemon/governor.h"
+#include "daemon/lab/histogram.h"
 #include "daemon/present/presenter.h"
-
-/*
- * Percentiles of positive numbers over a whole run in constant memory: classes
- * 1% wide from 0.001 up, so a percentile is right to half a percent.
- */
-#define STATS_CLASSES 2000u
-
-struct stats_spread {
-	uint32_t classes[STATS_CLASSES];
-	uint64_t count;
-};
-
-void stats_spread_add(struct stats_spread *spread, double value);
-/* The value that a share (0 to 1) of all lies at or below; 0 for none at all. */
-double stats_spread_percentile(const struct stats_spread *spread, double share);
 
 enum stats_show {
 	STATS_REAL = 0,
@@ -78,18 +64,28 @@ struct stats {
 	struct governor governor;                         /* as it is now */
 	uint64_t
 		engine_bytes; /* that the engine takes, in GL's memory and its own, as of the last real frame; 0: not counted */
-	struct stats_spread engine_ms, submit_to_flip_ms, flip_error_ms;
 	struct stats_name passes[STATS_NAMES], left_out[STATS_NAMES];
 	uint32_t pass_count, left_out_count;
-	uint64_t timeline_count;                   /* ever; the newest are kept */
-	struct stats_row timeline[STATS_TIMELINE]; /* last: see stats_publish() */
+	uint64_t timeline_count; /* ever; the newest are kept */
+	/* last: see stats_publish() */
+	struct stats_spans {
+		struct histogram engine, submit_to_flip, flip_error; /* ns */
+	} spans;
+	uint64_t spans_count; /* of a copy: rows when the spans were copied */
+	struct stats_row timeline[STATS_TIMELINE];
 };
 
 /* The engine's report about one real frame. */
 void stats_add_report(struct stats *stats, const struct engine_report *report);
 void stats_add_row(struct stats *stats, const struct stats_row *row);
 
-/* Brings a copy up to date: the figures, and the rows that it lacks. Microseconds. */
+/* Of a histogram, in ms: what JSON and the view say. */
+double stats_percentile_ms(const struct histogram *histogram, double share);
+
+/*
+ * Brings a copy up to date: the figures, and the rows that it lacks. Microseconds. The spans are large, so after the
+ * first rows they are copied once in eight.
+ */
 void stats_publish(const struct stats *stats, struct stats *copy);
 
 /* A JSON object with the figures by their names; the caller owns it. NULL: out of memory. */

@@ -104,11 +104,11 @@ static void write_text(struct render *render, uint64_t now_ns)
 			 "%llu real frames lost, %llu late",
 			 render->settings->method, width, height, render->presenter->impl->name, real_hz, hz,
 			 1e9 / grid_period_ns(&render->grid), render->n, (double)render->pacer.delay_ns / 1e6,
-			 stats_spread_percentile(&stats->engine_ms, 0.5), stats_spread_percentile(&stats->engine_ms, 0.99),
-			 stats_spread_percentile(&stats->submit_to_flip_ms, 0.5),
-			 stats_spread_percentile(&stats->submit_to_flip_ms, 0.99),
-			 share(stats->vblanks_on_time, stats->vblanks_due), (unsigned long long)stats->late_in_betweens,
-			 (unsigned long long)stats->lost_real_frames, (unsigned long long)stats->late_real_frames);
+			 stats_percentile_ms(&stats->spans.engine, 0.5), stats_percentile_ms(&stats->spans.engine, 0.99),
+			 stats_percentile_ms(&stats->spans.submit_to_flip, 0.5),
+			 stats_percentile_ms(&stats->spans.submit_to_flip, 0.99), share(stats->vblanks_on_time, stats->vblanks_due),
+			 (unsigned long long)stats->late_in_betweens, (unsigned long long)stats->lost_real_frames,
+			 (unsigned long long)stats->late_real_frames);
 	view->text_ns = now_ns;
 	view->text_frames = stats->displayed_frames;
 	view->text_active_ns = stats->active_ns;

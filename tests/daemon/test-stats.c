@@ -14,18 +14,32 @@
 
 static void test_percentiles(void)
 {
-	static struct stats_spread spread;
-	CHECK_NEAR(stats_spread_percentile(&spread, 0.5), 0, 0);
-	for (int i = 1; i <= 1000; i++)
-		stats_spread_add(&spread, i * 0.01);
-	CHECK_NEAR(stats_spread_percentile(&spread, 0.5), 5, 0.05);
-	CHECK_NEAR(stats_spread_percentile(&spread, 0.99), 9.9, 0.1);
-	static struct stats_spread wild;
-	static const double values[] = {NAN, -5, 0, INFINITY, 1e300, 1e-300};
-	for (size_t i = 0; i < 6; i++)
-		stats_spread_add(&wild, values[i]);
-	CHECK_INT(wild.count, 6);
-	CHECK(isfinite(stats_spread_percentile(&wild, 1.0)));
+	static struct stats wild;
+	static const double values[] = {NAN, -5, 0, INFINITY, 1e300, 1e-300, 4, 4, 4};
+	for (size_t i = 0; i < sizeof(values) / sizeof(values[0]); i++) {
+		const struct engine_report report = {.total_ms = values[i]};
+		stats_add_report(&wild, &report);
+	}
+	CHECK_INT(wild.spans.engine.count, 7);
+	CHECK_NEAR(stats_percentile_ms(&wild.spans.engine, 0.5), 4, 0.02);
+	CHECK(isfinite(stats_percentile_ms(&wild.spans.engine, 1.0)));
+}
+
+/* A copy is at most seven rows behind with its spans, and never with anything else. */
+static void test_publishing(void)
+{
+	static struct stats stats, copy;
+	for (uint64_t i = 1; i <= 400; i++) {
+		const struct stats_row row = {.vblank = i};
+		histogram_add(&stats.spans.flip_error, 1000);
+		stats_add_row(&stats, &row);
+		stats.displayed_frames = i;
+		stats_publish(&stats, &copy);
+		CHECK_INT(copy.displayed_frames, i);
+		CHECK_INT(copy.timeline_count, i);
+		CHECK_INT(copy.timeline[(i - 1) % STATS_TIMELINE].vblank, i);
+		CHECK(copy.spans.flip_error.count + (i <= 64 ? 0 : 7) >= i);
+	}
 }
 
 static void test_costs(void)
@@ -112,7 +126,7 @@ static void test_figures(void)
 	CHECK_INT(stats.vblanks_due, 60); /* the pause is none of them */
 	CHECK_INT(stats.vblanks_on_time, 57);
 	CHECK_NEAR((double)stats.active_ns, 60.0 * (double)PERIOD, 10);
-	CHECK_NEAR(stats_spread_percentile(&stats.submit_to_flip_ms, 0.5), 5.02, 0.05);
+	CHECK_NEAR(stats_percentile_ms(&stats.spans.submit_to_flip, 0.5), 5.02, 0.05);
 	CHECK_INT(control->feedback_count, 30);
 	CHECK_INT(control->feedback[9].state, PURSUIT_FEEDBACK_REPLACED);
 	CHECK_INT(control->feedback[9].frame_id, 10);
@@ -158,6 +172,7 @@ static void test_json(void)
 int main(void)
 {
 	RUN(test_percentiles);
+	RUN(test_publishing);
 	RUN(test_costs);
 	RUN(test_figures);
 	RUN(test_json);
