@@ -62,10 +62,10 @@ static const struct option_row rows[] = {
 	TEXT(context, "context", OPTION_ENGINE, "auto",
 		 "Where the engine runs: auto, egl, egl-device:INDEX, osmesa or cpu."),
 	FLAG(gles, "gles", OPTION_ENGINE, "no", "Use OpenGL ES 3.1 instead of OpenGL 4.3 core."),
-	NUMBER(
-		threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
-		"Threads that the engine draws with where it runs on the CPU; 0: one for each processor that it may run on, at "
-		"most 8."),
+	NUMBER(threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
+		   "Threads that the engine works with on the CPU, besides those of GL; 0: one for each processor that it may "
+		   "run on, at "
+		   "most 8."),
 	CHOICE(
 		analysis, "analysis", OPTION_ENGINE, "auto", analysis_choices,
 		"Who looks at motion and depth: the CPU, or the GPU where the engine draws with one; auto: the CPU, as long as "

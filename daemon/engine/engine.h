@@ -80,7 +80,7 @@ struct engine_params {
 	const struct engine_context *brought;
 	uint32_t device;  /* index, for ENGINE_CONTEXT_EGL_DEVICE */
 	bool gles;        /* a GLES 3.1 context instead of GL 4.3 core */
-	uint32_t threads; /* of the CPU executor, the caller's among them, 1 to 8; 0: one for each CPU we may run on */
+	uint32_t threads; /* on the CPU, the caller's among them, 1 to 8; 0: one for each CPU that we may run on */
 	const char
 		*level; /* of its kernels, for tests: "plain", "avx2", "avx512", "neon"; NULL: the best. All give equal bits */
 	const char *method; /* name; NULL: "pursuit" */

@@ -155,6 +155,12 @@ static void draw(struct picture *picture, uint32_t width, uint32_t height, doubl
 
 #define PICTURES 4
 
+/* As on a GPU: pictures come back by way of buffers. */
+static void buffer(struct engine *engine)
+{
+	gl_of(engine)->readback.buffered = true;
+}
+
 static void check_steady(const char *method, enum engine_analysis analysis)
 {
 	struct engine_params own = params;
@@ -165,7 +171,8 @@ static void check_steady(const char *method, enum engine_analysis analysis)
 	struct engine *engine = make(&own);
 	for (int i = 0; i < PICTURES; i++)
 		draw(&pictures[i], 400, 300, 0.7 * i);
-	for (int i = 0; i < 2 * PICTURES && engine; i++)
+	buffer(engine);
+	for (int i = 0; i < 2 * PICTURES; i++)
 		show_all(engine, &pictures[i % PICTURES], out);
 	count_calls(engine);
 	for (int i = 0; i < 3 * PICTURES; i++)
@@ -214,6 +221,7 @@ static void test_memory(void)
 	struct engine *engine = make(&params);
 	struct picture picture;
 	uint8_t *out = malloc((size_t)4 * 1920 * 1080);
+	buffer(engine);
 	draw(&picture, 1920, 1080, 0.0);
 	for (int i = 0; i < 2; i++)
 		show_all(engine, &picture, out);
@@ -228,6 +236,40 @@ static void test_memory(void)
 	picture_finish(&picture);
 	engine_destroy(&engine);
 	free(out);
+}
+
+/* ---- the way back ---- */
+
+/* By buffers or at once: the same bits, and nothing beside them. Sizes of less than a row of blocks and of many. */
+static void test_read_back(void)
+{
+	static const uint32_t sizes[][2] = {{1, 1}, {7, 3}, {640, 360}, {1500, 1000}, {2, 900}, {2048, 2}};
+	struct engine *engines[2] = {make(&params), make(&params)};
+	buffer(engines[1]);
+	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+		const uint32_t width = sizes[i][0], height = sizes[i][1];
+		const size_t stride = 4 * (size_t)width + 20, bytes = stride * height;
+		struct picture picture;
+		uint8_t *out[2] = {malloc(bytes), malloc(bytes)};
+		picture_init(&picture, width, height, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
+		picture_draw_layers(&picture, 0.0);
+		for (int k = 0; k < 2; k++) {
+			const struct engine_request request = {ENGINE_SHOW_IN_BETWEEN, 0.5};
+			struct engine_image image = {.data = out[k], .stride = stride};
+			struct error error = {""};
+			memset(out[k], 0x5a, bytes);
+			begin(engines[k], &picture, 2);
+			CHECK_INT(engine_render(engines[k], &request, &image, &error), 0);
+			CHECK_STRING(error.text, "");
+		}
+		CHECK(memcmp(out[0], out[1], bytes) == 0);
+		CHECK(out[1][bytes - 1] == 0x5a && out[1][bytes - 21] == 255);
+		picture_finish(&picture);
+		free(out[0]);
+		free(out[1]);
+	}
+	for (int k = 0; k < 2; k++)
+		engine_destroy(&engines[k]);
 }
 
 /* ---- what does not move ---- */
@@ -412,6 +454,7 @@ int main(int argc, char **argv)
 	RUN(test_counters_count);
 	RUN(test_steady_state);
 	RUN(test_memory);
+	RUN(test_read_back);
 	RUN(test_still_is_not_drawn_twice);
 	RUN(test_contexts_agree);
 	RUN(test_timer_queries);

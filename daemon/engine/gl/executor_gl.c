@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "daemon/engine/pass.h"
+#include "daemon/engine/pool.h"
 
 static struct executor_gl *self(struct executor *executor)
 {
@@ -50,6 +51,7 @@ static void delete_objects(struct executor_gl *executor)
 	dynamic_finish(&executor->tile_vertices, gl);
 	warp_buffers_finish(&executor->buffers, gl);
 	stream_finish(&executor->stream, gl);
+	readback_finish(&executor->readback, gl);
 	analysis_finish(&executor->analysis, gl);
 	program_cache_finish(&executor->programs, gl);
 	timer_finish(&executor->timer, gl);
@@ -63,6 +65,7 @@ static void destroy(struct executor **executor)
 	context_enter(gone->context, &error);
 	delete_objects(gone);
 	context_destroy(&gone->context);
+	pool_destroy(&gone->base.pool);
 	tiles_finish(&gone->shown.changed);
 	free(gone->row);
 	free(gone);
@@ -104,7 +107,8 @@ static uint64_t count_bytes(const struct executor_gl *executor)
 	for (int i = 0; i < MAX_LEVELS; i++)
 		bytes += target_bytes(&executor->levels[i]);
 	bytes += executor->buffers.vertices.bytes + executor->buffers.indices.bytes + executor->tile_vertices.bytes;
-	return bytes + stream_bytes(&executor->stream) + analysis_bytes(&executor->analysis);
+	bytes += stream_bytes(&executor->stream) + readback_bytes(&executor->readback);
+	return bytes + analysis_bytes(&executor->analysis);
 }
 
 static void collect_times(struct executor *executor)
@@ -169,6 +173,9 @@ struct executor *executor_gl_create(const struct engine_params *params, struct e
 	executor->base.max_size = (uint32_t)executor->context->gl.max_size;
 	timer_init(&executor->timer, &executor->context->gl, !executor->base.info.software || params->query_software,
 			   params->finish_each_pass);
+	executor->readback.buffered = !executor->base.info.software;
+	/* For what the CPU does here; without it, the caller does all. */
+	executor->base.pool = pool_create(params->threads);
 	set_up(executor);
 	return &executor->base;
 }

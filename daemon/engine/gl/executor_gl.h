@@ -8,6 +8,7 @@
 #include "daemon/engine/gl/analysis.h"
 #include "daemon/engine/gl/context.h"
 #include "daemon/engine/gl/program.h"
+#include "daemon/engine/gl/readback.h"
 #include "daemon/engine/gl/stream.h"
 #include "daemon/engine/gl/target.h"
 #include "daemon/engine/gl/timer.h"
@@ -34,6 +35,7 @@ struct executor_gl {
 	struct target levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
 	struct warp_buffers buffers;
 	struct stream stream;
+	struct readback readback;
 	struct analysis analysis;
 	uint8_t *row; /* of the UI */
 	size_t row_bytes;

@@ -10,11 +10,9 @@ static int run(struct engine *engine, struct error *error)
 	const struct engine_image *image = engine->job.image;
 	const struct target *picture = picture_of(engine, engine->job.picture);
 	gl->BindFramebuffer(GL_READ_FRAMEBUFFER, picture->framebuffer);
-	gl->PixelStorei(GL_PACK_ROW_LENGTH, (GLint)(image->stride / 4));
-	gl->ReadPixels(0, 0, (GLsizei)picture->width, (GLsizei)picture->height, gl->pixel_format, gl->pixel_type,
-				   image->data);
+	const struct readback_image to = {image->data, image->stride, picture->width, picture->height};
 	engine->report.bytes_down += 4 * (uint64_t)picture->width * picture->height;
-	return 0;
+	return readback_run(&gl_of(engine)->readback, gl, &to, error);
 }
 
 const struct pass gl_pass_read = {.run = run};
