@@ -21,17 +21,29 @@
 /* Unless the CPU is to draw on it, or to look at it. */
 static bool stays_in_gl(const struct render *render)
 {
-	return engine_get_info(render->engine)->brought && !render->tee && !lab_draws(render->lab) &&
-		   !view_draws(&render->view, clock_now(render->clock));
+	return engine_get_info(render->engine)->brought && !render->through_memory && !render->tee &&
+		   !lab_draws(render->lab) && !view_draws(&render->view, clock_now(render->clock));
+}
+
+/* In GL, if it can be there. */
+static int acquire_somewhere(struct render *render, uint32_t width, uint32_t height, struct presenter_image *image)
+{
+	const struct presenter_impl *impl = render->presenter->impl;
+	if (!stays_in_gl(render))
+		return impl->acquire(render->presenter, width, height, image);
+	const int result = impl->acquire_texture(render->presenter, width, height, image);
+	if (result >= 0 || result == -EBUSY || result == -E2BIG)
+		return result;
+	log_warning(render->log, "%s takes no pictures in GL: they go through CPU memory", impl->name);
+	render->through_memory = true;
+	return impl->acquire(render->presenter, width, height, image);
 }
 
 static int acquire(struct render *render, struct presenter_image *image)
 {
-	struct presenter *presenter = render->presenter;
 	uint32_t width, height;
 	engine_get_size(render->engine, &width, &height);
-	const int result = stays_in_gl(render) ? presenter->impl->acquire_texture(presenter, width, height, image)
-										   : presenter->impl->acquire(presenter, width, height, image);
+	const int result = acquire_somewhere(render, width, height, image);
 	if (result == -EBUSY)
 		render_expect_flips(render);
 	if (result < 0 && result != -E2BIG)
@@ -69,8 +81,12 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 	int result = acquire(render, image);
 	if (result < 0)
 		return result;
-	struct engine_image target = {
-		.data = image->data, .stride = image->stride, .holds = image->holds, .texture = image->texture};
+	struct engine_image target = {.data = image->data,
+								  .stride = image->stride,
+								  .holds = image->holds,
+								  .texture = image->texture,
+								  .texture_x = image->texture_x,
+								  .texture_y = image->texture_y};
 	result = engine_render(render->engine, &request, &target, &error);
 	image->holds = result == 0 ? target.holds : 0;
 	if (result == 0) {

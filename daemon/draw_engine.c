@@ -63,7 +63,7 @@ void draw_follow_context(struct render *render)
 	}
 	render->begun = false;
 	render->context = context;
-	render->context_shunned = false;
+	render->context_shunned = render->through_memory = false;
 	if (context)
 		render->brought = (struct engine_context){.name = context->name,
 												  .enter = context->enter,

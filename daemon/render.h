@@ -52,6 +52,7 @@ struct render {
 	const struct presenter_context *context; /* that it offers to draw in; NULL: none */
 	struct engine_context brought;           /* the same, as the engine wants it */
 	bool context_shunned;                    /* an engine was lost in it */
+	bool through_memory;                     /* the presenter has refused a picture in GL */
 	struct grid grid;
 	uint64_t lead_ns; /* that the presenter wants pictures before their vblank */
 	struct pacer pacer;

@@ -60,7 +60,7 @@ enum engine_curve {
 /*
  * A GL context (4.3 core) that somebody else made and keeps, in a share group with the one that shows the pictures, so
  * that these need not leave GL. All functions are called on the engine's thread; between calls of the engine others may
- * bind textures of unit 0 there, and nothing else.
+ * bind textures of unit 0 and framebuffers there, and nothing else.
  */
 struct engine_context {
 	const char *name;            /* static */
@@ -122,10 +122,12 @@ struct engine_image {
 	 */
 	uint64_t holds;
 	/*
-	 * With data NULL, of an engine in a brought context: a texture of its share group, BGRA8, as large as the frame's
-	 * colour, row 0 on top. 0: none. The pixels are there when engine_render() returns: whoever binds it sees them.
+	 * With data NULL, of an engine in a brought context: a texture of its share group, BGRA8, at least as large as the
+	 * frame's colour, row 0 on top. 0: none. The pixels are there when engine_render() returns: whoever binds it sees
+	 * them.
 	 */
 	uint32_t texture;
+	uint32_t texture_x, texture_y; /* of a larger one: where the picture begins */
 };
 
 struct engine_begin_params {

@@ -59,6 +59,14 @@ static int light_up(struct kms *kms, struct error *error)
 								   kms_device_get_name(kms->device), strerror(-result));
 }
 
+static void destroy_picture(struct kms *kms, struct kms_picture *picture)
+{
+	kms_device_destroy_buffer(kms->device, &picture->buffer);
+	kms_device_destroy_buffer(kms->device, &picture->gl_buffer);
+	if (kms->gl)
+		kms_gl_destroy_buffer(kms->gl, &picture->gl);
+}
+
 static void take_down(struct kms *kms)
 {
 	kms_cable_destroy(&kms->cable);
@@ -66,9 +74,10 @@ static void take_down(struct kms *kms)
 		/* First what was there before, so that the display does not go dark in between. */
 		kms_device_restore(kms->device);
 		for (uint32_t i = 0; i < FLIPS_IMAGES; i++)
-			kms_device_destroy_buffer(kms->device, &kms->pictures[i].buffer);
+			destroy_picture(kms, &kms->pictures[i]);
 		kms_device_destroy_buffer(kms->device, &kms->backdrop);
 	}
+	kms_gl_destroy(&kms->gl);
 	kms_device_destroy(&kms->device);
 	kms_console_finish(&kms->console);
 	if (kms->wake >= 0)
@@ -86,6 +95,16 @@ static int start_thread(struct kms *kms)
 	const int code = pthread_create(&kms->thread, &attributes, kms_run, kms);
 	pthread_attr_destroy(&attributes);
 	return code;
+}
+
+static void open_gl(struct kms *kms)
+{
+	struct error error;
+	if (!kms->params.options.share_gl)
+		return;
+	kms->gl = kms_gl_create(kms_device_get_fd(kms->device), &error);
+	if (!kms->gl)
+		log_info(kms->params.log, "%s", error.text);
 }
 
 /* On the thread that watches the cable. */
@@ -108,6 +127,7 @@ static int start(struct kms *kms, struct error *error)
 	const int result = light_up(kms, error);
 	if (result < 0)
 		return result;
+	open_gl(kms);
 	kms_console_init(&kms->console, kms->params.log);
 	kms->cable = kms_cable_create(kms->device, on_unplugged, kms, error);
 	if (!kms->cable)
@@ -159,21 +179,48 @@ static void kms_destroy(struct presenter *presenter)
 
 /* ---- pictures ---- */
 
-/* The picture lies in the middle. */
+/* Where a picture begins that lies in the middle. */
+static uint32_t left_of(const struct kms_mode *mode, uint32_t width)
+{
+	return (mode->width - width) / 2 / COLUMNS * COLUMNS;
+}
+
+static uint32_t top_of(const struct kms_mode *mode, uint32_t height)
+{
+	return (mode->height - height) / 2;
+}
+
 static void place(struct kms *kms, struct kms_picture *picture, uint32_t width, uint32_t height,
 				  struct presenter_image *image)
 {
 	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	const size_t x = (mode->width - width) / 2 / COLUMNS * COLUMNS, y = (mode->height - height) / 2;
 	const bool same = picture->width == width && picture->height == height;
 	if (!same)
 		memset(picture->buffer.data, 0, picture->buffer.size);
 	image->holds = same ? picture->holds : 0;
 	picture->holds = 0;
+	picture->in_gl = false;
 	picture->width = image->width = width;
 	picture->height = image->height = height;
 	image->stride = picture->buffer.stride;
-	image->data = picture->buffer.data + y * picture->buffer.stride + x * 4;
+	image->data = picture->buffer.data + top_of(mode, height) * picture->buffer.stride + left_of(mode, width) * 4;
+}
+
+static void place_in_gl(struct kms *kms, struct kms_picture *picture, uint32_t width, uint32_t height,
+						struct presenter_image *image)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	const bool same = picture->gl_width == width && picture->gl_height == height;
+	if (!same)
+		kms_gl_blacken(kms->gl, &picture->gl);
+	image->holds = same ? picture->gl_holds : 0;
+	picture->gl_holds = 0;
+	picture->in_gl = true;
+	picture->gl_width = image->width = width;
+	picture->gl_height = image->height = height;
+	image->texture = picture->gl.texture;
+	image->texture_x = left_of(mode, width);
+	image->texture_y = top_of(mode, height);
 }
 
 static int refuse_size(struct kms *kms, uint32_t width, uint32_t height)
@@ -189,12 +236,10 @@ static int refuse_size(struct kms *kms, uint32_t width, uint32_t height)
 	return -E2BIG;
 }
 
-static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
+/* A free one. Negative errno. */
+static int acquire_index(struct kms *kms, uint32_t width, uint32_t height, struct presenter_image *image)
 {
-	struct kms *kms = self_of(presenter);
 	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	struct error error;
-
 	if (width > mode->width || height > mode->height)
 		return refuse_size(kms, width, height);
 	pthread_mutex_lock(&kms->lock);
@@ -202,9 +247,18 @@ static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t hei
 	pthread_mutex_unlock(&kms->lock);
 	if (index < 0)
 		return -EBUSY;
+	*image = (struct presenter_image){.index = (uint32_t)index};
+	return index;
+}
+
+static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
+{
+	struct kms *kms = self_of(presenter);
+	struct error error;
+	const int index = acquire_index(kms, width, height, image);
+	if (index < 0)
+		return index;
 	struct kms_picture *picture = &kms->pictures[index];
-	image->index = (uint32_t)index;
-	image->holds = 0;
 	if (!picture->buffer.data && kms_device_create_buffer(kms->device, &picture->buffer, &error) < 0) {
 		log_warning(kms->params.log, "%s", error.text);
 		presenter->impl->release(presenter, image);
@@ -214,10 +268,59 @@ static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t hei
 	return 0;
 }
 
+static const struct presenter_context *kms_get_context(struct presenter *presenter)
+{
+	struct kms *kms = self_of(presenter);
+	return kms->gl ? kms_gl_get_context(kms->gl) : NULL;
+}
+
+/* With the lock for the device, which may be given away meanwhile. */
+static int make_gl_buffer(struct kms *kms, struct kms_picture *picture, struct error *error)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	int result = kms_gl_create_buffer(kms->gl, mode->width, mode->height, &picture->gl, error);
+	if (result < 0)
+		return result;
+	pthread_mutex_lock(&kms->lock);
+	result = kms_device_adopt_buffer(kms->device, picture->gl.handle, picture->gl.stride, &picture->gl_buffer, error);
+	pthread_mutex_unlock(&kms->lock);
+	if (result < 0)
+		kms_gl_destroy_buffer(kms->gl, &picture->gl);
+	return result;
+}
+
+static int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t height,
+							   struct presenter_image *image)
+{
+	struct kms *kms = self_of(presenter);
+	struct error error;
+	const int index = acquire_index(kms, width, height, image);
+	if (index < 0)
+		return index;
+	struct kms_picture *picture = &kms->pictures[index];
+	if (!picture->gl_buffer.framebuffer && make_gl_buffer(kms, picture, &error) < 0) {
+		log_warning(kms->params.log, "%s", error.text);
+		presenter->impl->release(presenter, image);
+		return -ENOTSUP;
+	}
+	place_in_gl(kms, picture, width, height, image);
+	return 0;
+}
+
+/* Before anybody else can acquire it. */
+static void keep_holds(struct kms *kms, const struct presenter_image *image)
+{
+	struct kms_picture *picture = &kms->pictures[image->index];
+	if (image->texture)
+		picture->gl_holds = image->holds;
+	else
+		picture->holds = image->holds;
+}
+
 static void kms_release(struct presenter *presenter, const struct presenter_image *image)
 {
 	struct kms *kms = self_of(presenter);
-	kms->pictures[image->index].holds = image->holds;
+	keep_holds(kms, image);
 	pthread_mutex_lock(&kms->lock);
 	flips_release(&kms->scanout.flips, image->index);
 	pthread_mutex_unlock(&kms->lock);
@@ -237,7 +340,7 @@ static int kms_present(struct presenter *presenter, const struct presenter_image
 	struct kms *kms = self_of(presenter);
 	int result = -ETIME;
 
-	kms->pictures[image->index].holds = image->holds;
+	keep_holds(kms, image);
 	pthread_mutex_lock(&kms->lock);
 	if (!kms->running && !kms->lost && clock_now(kms->params.clock) < grid_time(&kms->grid, vblank))
 		kms_start(kms, vblank);
@@ -257,7 +360,7 @@ static void kms_set_standby(struct presenter *presenter, const struct presenter_
 							uint64_t serial)
 {
 	struct kms *kms = self_of(presenter);
-	kms->pictures[image->index].holds = image->holds;
+	keep_holds(kms, image);
 	pthread_mutex_lock(&kms->lock);
 	flips_set_standby(&kms->scanout.flips, image->index, group, serial);
 	pthread_mutex_unlock(&kms->lock);
@@ -312,6 +415,8 @@ const struct presenter_impl presenter_kms = {
 	.get_lead = kms_get_lead,
 	.get_display = kms_get_display,
 	.acquire = kms_acquire,
+	.get_context = kms_get_context,
+	.acquire_texture = kms_acquire_texture,
 	.release = kms_release,
 	.present = kms_present,
 	.set_standby = kms_set_standby,

@@ -24,14 +24,20 @@
 #include "daemon/present/kms_cable.h"
 #include "daemon/present/kms_console.h"
 #include "daemon/present/kms_device.h"
+#include "daemon/present/kms_gl.h"
 #include "daemon/present/presenter.h"
 #include "daemon/present/scanout.h"
 #include "daemon/present/vblanks.h"
 
 #define KMS_REPORTS 16u
 
+/* It has memory for the CPU and for GL, as soon as each is asked for; it was drawn into one of them. */
 struct kms_picture {
-	struct kms_buffer buffer;
+	struct kms_buffer buffer, gl_buffer;
+	struct kms_gl_buffer gl;
+	uint32_t gl_width, gl_height; /* as width and height, of that in GL */
+	uint64_t gl_holds;
+	bool in_gl;
 	uint32_t width, height; /* of what was drawn into it; the rest is black */
 	uint64_t holds;         /* as struct presenter_image says; 0 while it is acquired */
 };
@@ -40,6 +46,7 @@ struct kms {
 	struct presenter presenter;
 	struct presenter_params params;
 	struct kms_device *device;
+	struct kms_gl *gl; /* NULL: pictures come through CPU memory */
 	struct kms_console console;
 	struct kms_cable *cable;
 	int wake;          /* -1: none */
@@ -65,6 +72,12 @@ struct kms {
 	uint32_t report_count;
 	bool told_loss;
 };
+
+/* What the controller is to show for it. */
+static inline const struct kms_buffer *kms_buffer_of(const struct kms_picture *picture)
+{
+	return picture->in_gl ? &picture->gl_buffer : &picture->buffer;
+}
 
 /* All with the lock. */
 

@@ -404,6 +404,8 @@ const char *kms_device_get_name(const struct kms_device *device)
 	return device->name;
 }
 
+static int commit(const struct kms_device *device, const struct kms_buffer *buffer, uint32_t flags);
+
 /* ---- buffers ---- */
 
 static int map_buffer(const struct kms_device *device, struct kms_buffer *buffer)
@@ -453,6 +455,23 @@ void kms_device_destroy_buffer(struct kms_device *device, struct kms_buffer *buf
 	if (buffer->handle)
 		drmModeDestroyDumbBuffer(device->fd, buffer->handle);
 	memset(buffer, 0, sizeof(*buffer));
+}
+
+int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t stride, struct kms_buffer *buffer,
+							struct error *error)
+{
+	const uint32_t handles[4] = {handle}, pitches[4] = {stride}, offsets[4] = {0};
+	*buffer = (struct kms_buffer){.stride = stride};
+	int result = drmModeAddFB2(device->fd, device->mode.width, device->mode.height, DRM_FORMAT_XRGB8888, handles,
+							   pitches, offsets, &buffer->framebuffer, 0);
+	if (result == 0 && device->atomic.usable && !device->away)
+		result = commit(device, buffer, DRM_MODE_ATOMIC_TEST_ONLY);
+	if (result == 0)
+		return 0;
+	result = -errno;
+	kms_device_destroy_buffer(device, buffer);
+	return error_set(error, result, "kms: %s does not show buffers that GL draws into: %s", device->path,
+					 strerror(-result));
 }
 
 /* ---- showing ---- */

@@ -66,6 +66,12 @@ const char *kms_device_get_name(const struct kms_device *device);
 /* Of the mode's size, black; rows are multiples of 64 bytes apart where the driver lets us choose. */
 int kms_device_create_buffer(struct kms_device *device, struct kms_buffer *buffer, struct error *error);
 void kms_device_destroy_buffer(struct kms_device *device, struct kms_buffer *buffer);
+/*
+ * One of the mode's size that somebody else made (XRGB8888): data is NULL, and the handle stays his. Tries whether the
+ * display takes it, where the driver can tell.
+ */
+int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t stride, struct kms_buffer *buffer,
+							struct error *error);
 
 /* Lights the display up with this buffer; waits until it is. */
 int kms_device_show(struct kms_device *device, const struct kms_buffer *buffer, struct error *error);

@@ -43,7 +43,8 @@ struct presenter_image {
 	 * unknown. The presenter keeps it with the memory and writes nothing there; whoever else does sets it to 0.
 	 */
 	uint64_t holds;
-	uint32_t texture; /* of the share group of get_context(), row 0 on top; 0: in CPU memory */
+	uint32_t texture;              /* of the share group of get_context(), row 0 on top; 0: in CPU memory */
+	uint32_t texture_x, texture_y; /* where the picture begins in it */
 };
 
 /*
@@ -164,7 +165,8 @@ struct presenter_impl {
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/*
 	 * Optional, both or none. The context, NULL: it has none to offer; it may be current nowhere when the presenter is
-	 * destroyed. And acquire() of a picture in GL: with that context current; what it binds to texture unit 0 changes.
+	 * destroyed. And acquire() of a picture in GL: with that context current; what is bound to its texture unit 0 and
+	 * as framebuffer changes. Other errors than -EBUSY and -E2BIG: pictures had better come by acquire().
 	 */
 	const struct presenter_context *(*get_context)(struct presenter *presenter);
 	int (*acquire_texture)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);

@@ -230,12 +230,21 @@ static void test_lost_server(void)
 	CHECK(play_until_shown(20));
 }
 
+/* It is looked for up to eight seconds apart, by a machine that may have other things to do. */
+static bool logged_at_last(const char *text)
+{
+	for (int i = 0; i < 6; i++)
+		if (fixture_logged(&fixture, text))
+			return true;
+	return false;
+}
+
 /* And comes back: so does the window, and whose pictures went nowhere sees them again. */
 static void test_server_that_comes_back(void)
 {
 	for (int i = 0; i < 3; i++) {
 		CHECK(xvfb_start(&xvfb));
-		CHECK(fixture_logged(&fixture, "glfw works again and takes over from headless"));
+		CHECK(logged_at_last("glfw works again and takes over from headless"));
 		window = xvfb_find(&xvfb, "Pursuit");
 		CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
 		CHECK(play_until_shown(20));
@@ -253,9 +262,9 @@ static void test_server_that_is_waited_for(void)
 	start("glfw");
 	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
 	xvfb_stop(&xvfb);
-	CHECK(fixture_logged(&fixture, "no presenter works"));
+	CHECK(logged_at_last("no presenter works"));
 	CHECK(xvfb_start(&xvfb));
-	CHECK(fixture_logged(&fixture, "glfw presents now"));
+	CHECK(logged_at_last("glfw presents now"));
 	window = xvfb_find(&xvfb, "Pursuit");
 	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
 	stop(SIGTERM);

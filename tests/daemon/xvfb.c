@@ -84,7 +84,7 @@ static Window find_once(struct xvfb *xvfb, const char *title)
 Window xvfb_find(struct xvfb *xvfb, const char *title)
 {
 	Window window = 0;
-	for (int i = 0; i < 400 && !window; i++) {
+	for (int i = 0; i < 1200 && !window; i++) {
 		window = find_once(xvfb, title);
 		if (!window)
 			sleep_ms(50);

@@ -20,7 +20,7 @@ struct xvfb {
 bool xvfb_start(struct xvfb *xvfb);
 void xvfb_stop(struct xvfb *xvfb);
 
-/* The window with this title, 0 if there is none after 20 s. */
+/* The window with this title, 0 if there is none after 60 s. */
 Window xvfb_find(struct xvfb *xvfb, const char *title);
 void xvfb_get_size(struct xvfb *xvfb, Window window, unsigned *width, unsigned *height);
 /* 0xrrggbb of a pixel of the window as it is on the screen. */

@@ -20,6 +20,7 @@ SOCKET = os.path.join(FOLDER, "socket")
 STATE = "/sys/kernel/debug/dri/0/state"
 CABLE = "/sys/class/drm/card0-Virtual-1/status"
 CARD = "/dev/dri/card0"
+CHECKSUMS = "/sys/kernel/debug/dri/0/crtc-0/crc"
 MODE = "640x400@120"
 PATIENCE = 20.0
 DRM_SET_MASTER, DRM_DROP_MASTER = 0x641E, 0x641F
@@ -65,7 +66,7 @@ def on_display():
 
 
 class Daemon:
-    def __init__(self, *arguments, present="kms", terminal=None, user=None):
+    def __init__(self, *arguments, present="kms", terminal=None, user=None, environment=None):
         self.log_path = os.path.join(FOLDER, "log")
 
         def prepare():
@@ -80,7 +81,8 @@ class Daemon:
         with open(self.log_path, "w", encoding="utf-8") as log:
             self.process = subprocess.Popen(
                 [PURSUITD, "--present", present, "--method", "hold", "--socket", SOCKET, *arguments],
-                stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=prepare)
+                stdin=subprocess.DEVNULL, stdout=log, stderr=log, preexec_fn=prepare,
+                env={**os.environ, **(environment or {})})
 
     def log(self):
         return read(self.log_path)
@@ -154,6 +156,49 @@ def test_shows_and_restores():
         check(daemon.end(number) == status, f"it ends by {number}")
         check(wait_for(lambda before=before: on_display() == before),
               f"after {number.name} the console is back: {before}, {on_display()}")
+
+
+def scan_out(context, environment=None):
+    """What the controller made of a client's frames, vblank by vblank, as its checksums; and the daemon's status."""
+    daemon = Daemon("--mode", MODE, "--context", context, environment=environment)
+    check(daemon.is_ready(), f"the daemon starts with context {context}")
+    write(CHECKSUMS + "/control", "auto")
+    data = os.open(CHECKSUMS + "/data", os.O_RDONLY | os.O_NONBLOCK)
+    client = run_client(2)
+    seen = []
+    end = time.monotonic() + 3
+    while time.monotonic() < end:
+        try:
+            while True:
+                seen += re.findall(r"\S+ (0x[0-9a-f]+)", os.read(data, 4096).decode())
+        except BlockingIOError:
+            time.sleep(0.1)
+    os.close(data)
+    client.wait()
+    answer = daemon.status()
+    check(daemon.end() == 0, "it ends")
+    return seen, answer, daemon.log()
+
+
+def test_pictures_in_gl():
+    seen, answer, log = scan_out("egl")
+    if "pictures stay in GL" not in log:
+        print("  skipped: no GL on this display:", log)
+        return
+    passes = find(answer, "passes")
+    check(passes["read"] == 0 and passes["copy"] > 60, f"nothing is read back: {passes}")
+    check(find(answer, "vblanks") == find(answer, "vblanks_on_time"), "every vblank is on time")
+    through_memory, answer, log = scan_out("cpu")
+    check(find(answer, "passes")["copy"] == 0, "on the CPU there is nothing to copy in GL")
+    check(len(set(seen)) > 40 and set(seen) == set(through_memory),
+          f"the display gets the same bits: {len(seen)} and {len(through_memory)} vblanks, "
+          f"{len(set(seen))} and {len(set(through_memory))} pictures, {len(set(seen) & set(through_memory))} alike")
+
+
+def test_no_gl_on_the_display():
+    seen, _, log = scan_out("auto", {"LIBGL_DRIVERS_PATH": "/nonexistent"})
+    check("no buffers that GL can draw into" in log or "without GBM" in log, f"it is said: {log}")
+    check(len(set(seen)) > 40, "and pictures are shown all the same")
 
 
 def test_refusals():

@@ -36,7 +36,8 @@ static int run(struct engine *engine, struct error *error)
 	const GLenum status = gl->CheckFramebufferStatus(GL_DRAW_FRAMEBUFFER);
 	if (status != GL_FRAMEBUFFER_COMPLETE)
 		return error_set(error, -EINVAL, "texture %u cannot be drawn to (0x%x)", engine->job.image->texture, status);
-	gl->BlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+	const GLint x = (GLint)engine->job.image->texture_x, y = (GLint)engine->job.image->texture_y;
+	gl->BlitFramebuffer(0, 0, width, height, x, y, x + width, y + height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
 	return wait_until_done(gl, error);
 }
 
