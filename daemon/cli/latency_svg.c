@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 #include "latency_report.h"
@@ -42,7 +43,10 @@ static double place(const struct axis *axis, double value, double size)
 	return (share < 0.0 ? 0.0 : share > 1.0 ? 1.0 : share) * size;
 }
 
-/* From 0.2 to 99.8 % and a little more, so that one outlier does not make a needle of the rest. */
+/*
+ * From 0.2 to 99.8 % and a little more, so that one outlier does not make a needle of the rest; a class of the
+ * histogram (0.8 %) more at least, or one value alone would lie outside.
+ */
 static struct axis axis_of(const struct latency_report *const reports[2], uint32_t span)
 {
 	struct axis axis = {0, 0};
@@ -56,7 +60,7 @@ static struct axis axis_of(const struct latency_report *const reports[2], uint32
 		axis.to = any && axis.to > to ? axis.to : to;
 		any = true;
 	}
-	const double margin = (axis.to - axis.from) * 0.05 + 100.0;
+	const double margin = (axis.to - axis.from) * 0.05 + fmax(100.0, 0.01 * fmax(fabs(axis.from), fabs(axis.to)));
 	return (struct axis){axis.from - margin, axis.to + margin};
 }
 
@@ -149,7 +153,7 @@ static void draw_span(FILE *out, double y, const struct latency_report *const re
 		snprintf(words, sizeof(words), "median %.4f, 99 %% %.4f, max %.4f ms (%" PRIu64 ")",
 				 histogram_percentile(histogram, 0.5) / 1e6, histogram_percentile(histogram, 0.99) / 1e6,
 				 (double)histogram->most / 1e6, histogram->count);
-		print_text(out, LEFT + i * 420.0, y - 6, i ? "fill=\"#d55e00\"" : "fill=\"#0072b2\"", words);
+		print_text(out, LEFT + i * (PLOT + GAP), y - 6, i ? "fill=\"#d55e00\"" : "fill=\"#0072b2\"", words);
 	}
 }
 

@@ -50,6 +50,12 @@ class Latency(Case):
         self.assertAlmostEqual(spans["refresh"]["mean_us"], 8333.333, delta=0.01)
         self.assertNotIn("trigger_to_photon", spans)
 
+    def test_external_vsync_is_no_estimate(self):
+        uncertainty = self.json(self.log("a.csv", source="external vsync"))["uncertainty"]
+        self.assertEqual(uncertainty["flip_sources"], {"external vsync": 1200})
+        self.assertEqual(uncertainty["estimated"], [])
+        self.assertIn("a vblank of the external vsync", self.must("latency", self.path("a.csv")).stdout)
+
     def test_says_how_sure_it_is(self):
         self.assertEqual(self.json(self.log("a.csv"))["uncertainty"]["estimated"], [])
         uncertain = self.json(self.log("b.csv", source="timer"))["uncertainty"]
@@ -72,9 +78,15 @@ class Latency(Case):
     def test_plots(self):
         logs = [self.log("a <&>.csv"), self.log("b.csv", edge_us=80)]
         self.must("latency", *logs, "--svg", self.path("p.svg"))
-        names = [text.text for text in xml.etree.ElementTree.parse(self.path("p.svg")).iter("{http://www.w3.org/2000/svg}text")]
+        tree = xml.etree.ElementTree.parse(self.path("p.svg"))
+        names = [text.text for text in tree.iter("{http://www.w3.org/2000/svg}text")]
         self.assertIn("flip_to_edge", names)
         self.assertIn(f"{logs[0]}: 1200 refreshes in 10.0 s", names)
+        # Spans that never vary too have a bar within their axis.
+        histograms = [path.get("d") for path in tree.iter("{http://www.w3.org/2000/svg}path") if path.get("fill-opacity")]
+        self.assertGreater(len(histograms), 8)
+        for path in histograms:
+            self.assertGreater(len({point.split()[1] for point in path[1:-1].split("L")}), 1)
 
     def test_cut_log_is_read(self):
         path = self.log("a.csv")
