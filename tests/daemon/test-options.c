@@ -183,6 +183,76 @@ static int take(struct settings *settings, unsigned mask, char *a, char *b, int 
 	return result;
 }
 
+/* Sections that cannot be, each with the line in its sentence. */
+static void test_sections_refused(void)
+{
+	static const struct {
+		const char *text, *sentence;
+	} wrong[] = {
+		{"[application]\n", ":1: "},
+		{"cell = 8\n[application a/b]\n",
+		 ":2: application: \"a/b\" must be the name of an executable, without folders"},
+		{"[application x\ty]\n", ":1: application: the name holds a control character"},
+		{"[application "
+		 "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
+		 "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"
+		 "xxxxxx"
+		 "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx]\n",
+		 "is longer than"},
+		{"[application x]\n[application x]\n", ":2: application x has a section already, at line 1"},
+	};
+	struct settings settings;
+	struct error error = {""};
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		settings_defaults(&settings);
+		const char *path = file_with(wrong[i].text);
+		CHECK(load(&settings, path, &error) < 0);
+		CHECK(strstr(error.text, wrong[i].sentence) != NULL);
+		unlink(path);
+	}
+	CHECK(profile_check_name(" x", &error) < 0 && strstr(error.text, "begins or ends with a space"));
+}
+
+/* One more than there may be; and a file that is read again on top of itself. */
+static void test_many_sections(void)
+{
+	char text[PROFILES_MOST * 32 + 64] = "";
+	struct profiles profiles = {NULL, 0};
+	struct settings settings;
+	struct error error = {""};
+	settings_defaults(&settings);
+	size_t used = 0;
+	for (unsigned i = 0; i < PROFILES_MOST; i++)
+		used += (size_t)snprintf(text + used, sizeof(text) - used, "[application a%u]\ncell = 9\n", i);
+	const char *path = file_with(text);
+	CHECK_INT(configuration_load(&settings, &profiles, path, NULL, &error), 0);
+	CHECK_INT(configuration_load(&settings, &profiles, path, NULL, &error), 0);
+	CHECK_INT(profiles.count, PROFILES_MOST);
+	unlink(path);
+	path = file_with("[application one-more]\n");
+	CHECK(configuration_load(&settings, &profiles, path, NULL, &error) < 0);
+	CHECK(strstr(error.text, "is one more than the 256") != NULL);
+	unlink(path);
+	profiles_finish(&profiles);
+}
+
+/* For the programs that make man page and completions. */
+static void test_print_options(void)
+{
+	char *text = NULL, value[8];
+	size_t size = 0;
+	struct settings settings;
+	FILE *out = open_memstream(&text, &size);
+	settings_print_options(1u << OPTION_OUTPUT, out);
+	fclose(out);
+	CHECK(strstr(text, "option\ton-client-exit\tNAME\tkeep,black\t") != NULL);
+	CHECK(strstr(text, "option\t[no-]fullscreen\t\t\t") != NULL);
+	CHECK(!strstr(text, "option\tcell"));
+	free(text);
+	settings_defaults(&settings);
+	CHECK_INT(settings_get(&settings, "nothing", value, sizeof(value)), -ENOENT);
+}
+
 static void test_arguments(void)
 {
 	struct settings settings;
@@ -255,6 +325,9 @@ int main(void)
 	RUN(test_rates);
 	RUN(test_config_round_trip);
 	RUN(test_config_errors);
+	RUN(test_sections_refused);
+	RUN(test_many_sections);
+	RUN(test_print_options);
 	RUN(test_arguments);
 	RUN(test_engine_params);
 	RUN(test_help);

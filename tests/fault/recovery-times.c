@@ -96,7 +96,7 @@ static int by_size(const void *a, const void *b)
 
 static double percentile(const double *sorted, unsigned count, double share)
 {
-	const unsigned at = (unsigned)(share * count);
+	const unsigned at = (unsigned)(share * (count - 1) + 0.5);
 	return sorted[at < count ? at : count - 1];
 }
 

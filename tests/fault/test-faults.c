@@ -15,6 +15,8 @@
 
 #include "client/pursuit.h"
 #include "daemon/control.h"
+#include "daemon/lab/latency_log.h"
+#include "daemon/lab/latency_read.h"
 #include "daemon/record/image.h"
 #include "daemon/record/recorder.h"
 #include "daemon/server.h"
@@ -106,6 +108,39 @@ static bool run_recorder(void)
 	return fine && stats.frames_written == FRAMES;
 }
 
+/* ---- the latency log ---- */
+
+#define LOG_ROWS 600u
+
+static void write_latency(const char *path)
+{
+	static const struct log quiet = {.fd = 2, .level = LOG_LEVEL_ERROR};
+	struct error error;
+	struct latency_log *log = latency_log_create(path, "setting refresh = 120\n", &quiet, &error);
+	for (uint64_t i = 1; i <= LOG_ROWS; i++) {
+		const struct points points = {.vblank = i, .frame_id = i, .method = "hold"};
+		latency_log_push(log, &points);
+	}
+	latency_log_destroy(&log);
+}
+
+static bool read_latency(const char *name)
+{
+	struct latency_table table;
+	struct error error;
+	if (latency_read(sample_path(name), &table, &error) < 0)
+		return false;
+	CHECK(table.count > 0 && table.count <= LOG_ROWS);
+	latency_table_finish(&table);
+	return true;
+}
+
+static bool run_latency(void)
+{
+	const bool text = read_latency("latency.csv");
+	return read_latency("latency.bin") && text;
+}
+
 /* ---- images ---- */
 
 static bool run_images(void)
@@ -139,6 +174,8 @@ static void prepare_files(void)
 	CHECK_INT(image_write_png(sample_path("a.png"), picture, 16, 4, 4, true, &error), 0);
 	CHECK_INT(image_write_pfm(sample_path("a.pfm"), values, 4, 4, 1, &error), 0);
 	CHECK(sample_exr_write(sample_path("a.exr"), &exr));
+	write_latency(sample_path("latency.csv"));
+	write_latency(sample_path("latency.bin"));
 }
 
 /* ---- the shim ---- */
@@ -308,7 +345,7 @@ static const struct part {
 	const char *name;
 	bool (*run)(void); /* true: all went well */
 } parts[] = {
-	{"writer", run_writer}, {"reader", run_reader}, {"recorder", run_recorder},
+	{"writer", run_writer}, {"reader", run_reader}, {"recorder", run_recorder}, {"latency", run_latency},
 	{"images", run_images}, {"shim", run_shim},     {"server", run_server},
 };
 

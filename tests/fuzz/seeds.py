@@ -149,6 +149,17 @@ def images():
         put("image", f"exr-tiles-{want}", mark + exr([(b"Y", 1)], 0, tile=2))
         put("image", f"exr-tiles-zip-{want}", mark + exr([(b"U", 1), (b"V", 1)], 3, tile=3))
         put("image", f"nothing-{want}", mark + b"P")
+    put("image", "exr-huge-tiles", b"\x03" + exr([(b"Y", 1)], 0).replace(struct.pack("<II", 20000630, 2), struct.pack("<II", 20000630, 0x202))
+        .replace(attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)),
+                 attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))
+                 + attribute(b"tiles", b"tiledesc", struct.pack("<IIB", 32768, 32768, 0))))
+    deep = attribute(b"type", b"string", b"deepscanline") + attribute(b"version", b"int", struct.pack("<i", 1))
+    put("image", "exr-deep", b"\x03" + exr([(b"Z", 2)], 0).replace(struct.pack("<II", 20000630, 2), struct.pack("<II", 20000630, 0x802))
+        .replace(attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)),
+                 attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1)) + deep
+                 + attribute(b"maxSamplesPerPixel", b"int", struct.pack("<i", 1))
+                 + attribute(b"name", b"string", b"a") + attribute(b"chunkCount", b"int", struct.pack("<i", 4))))
+    put("image", "exr-no-channels", b"\x03" + exr([], 0))
 
 
 # ---- texts ----
