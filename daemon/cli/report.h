@@ -67,6 +67,16 @@ struct report_gallery {
 	uint32_t shown_first, shown_count; /* of the first clip; 0: none */
 };
 
+#define REPORT_COST_POINTS 12u
+
+/* Times along one axis, and the straight line through them: intercept + slope x. */
+struct report_cost {
+	struct arg_size size; /* of the picture; 0x0: each point has its own */
+	uint32_t count;
+	double x[REPORT_COST_POINTS], ms[REPORT_COST_POINTS];
+	double slope, intercept, r2;
+};
+
 struct report_options {
 	const char *scenes, *recordings, *methods, *sizes, *ns, *vary, *settings_list, *tables;
 	const char *out, *baseline, *fail_under;
@@ -86,7 +96,9 @@ struct report {
 	struct report_row *rows;
 	uint32_t row_count, row_capacity;
 	struct report_gallery *galleries; /* one a work */
-	json_t *tables;                   /* of other programs: [{title, columns, rows}] */
+	const char *cost_method;          /* NULL: the cost was not measured */
+	struct report_cost cost_share, cost_pixels;
+	json_t *tables; /* of other programs: [{title, columns, rows}] */
 	char started[32];
 	double seconds;
 	bool interrupted;

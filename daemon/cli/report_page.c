@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "daemon/record/image.h"
+#include "report_cost.h"
 #include "report_html.h"
 #include "report_overall.h"
 #include "report_viewer.h"
@@ -302,6 +303,8 @@ int report_write_page(struct report *report, struct error *error)
 	viewer_write(out);
 	for (uint32_t i = 0; i < report->work_count; i++)
 		put_work(report, out, i);
+	report_put_cost(report, out);
+	put_plot(report, out, "cost", "engine time against moving share and pixels");
 	put_tables(report, out);
 	put_definitions(out);
 	put_all_rows(report, out);

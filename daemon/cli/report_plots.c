@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "report.h"
+#include "report_cost.h"
 #include "report_overall.h"
 
 /* Told apart by people with any colour vision (Okabe and Ito 2008), and by shape. */
@@ -249,6 +249,17 @@ static bool plot_speed(const struct report *report)
 	return plot_close(&plot, report);
 }
 
+static bool plot_cost(const struct report *report)
+{
+	struct plot plot;
+	if (!report->cost_method)
+		return true;
+	if (!plot_open(&plot, report, "cost", 900, 380))
+		return false;
+	report_write_cost_plot(report, plot.script);
+	return plot_close(&plot, report);
+}
+
 /* ---- all ---- */
 
 bool report_draw_plots(const struct report *report)
@@ -269,5 +280,5 @@ bool report_draw_plots(const struct report *report)
 	if (scenes && drawn)
 		drawn = plot_pareto(report, NULL, "overall", "Error against run time, mean of all scenes that move") &&
 				plot_speed(report);
-	return drawn;
+	return drawn && plot_cost(report);
 }

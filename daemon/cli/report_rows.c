@@ -12,7 +12,7 @@
 
 #include "client/pursuit.h"
 #include "figures.h"
-#include "report.h"
+#include "report_cost.h"
 
 struct report_writer {
 	FILE *csv;
@@ -204,6 +204,7 @@ json_t *report_json(const struct report *report)
 		json_pack("{s:s, s:s, s:s, s:f, s:b, s:b, s:o, s:o, s:o}", "pursuit", "report", "version", version, "started",
 				  report->started, "seconds", report->seconds, "complete", !report->interrupted, "full",
 				  (int)report->options.full, "machine", machine_json(report), "measures", help, "rows", rows);
+	json_object_set_new(json, "cost", report_cost_json(report));
 	if (report->tables)
 		json_object_set(json, "tables", report->tables);
 	return json;

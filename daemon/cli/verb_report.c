@@ -6,7 +6,7 @@
 #include <time.h>
 
 #include "interrupt.h"
-#include "report.h"
+#include "report_cost.h"
 #include "verbs.h"
 
 #define VERB "report"
@@ -124,6 +124,8 @@ static int measure(struct report *report, struct error *error)
 		result = report_start_engines(report, error);
 	if (result == 0)
 		result = report_run(report, writer, error);
+	if (result == 0)
+		result = report_measure_cost(report, error);
 	report_writer_destroy(&writer);
 	report->seconds = now_s() - start;
 	return result;

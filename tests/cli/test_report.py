@@ -170,6 +170,29 @@ class Report(common.Case):
         self.assertIn("none.pursuit", self.report("--scenes", "none", "--recordings", self.path("none.pursuit"), "--methods",
                                                   "hold", out="none", status=1).stderr)
 
+    def check_line(self, line, count):
+        """Slope, intercept and R2 are those of the points."""
+        xs, ys = zip(*line["points"])
+        self.assertEqual(len(xs), count)
+        self.assertGreater(min(ys), 0)
+        x, y = sum(xs) / count, sum(ys) / count
+        xx, yy = sum((a - x) ** 2 for a in xs), sum((b - y) ** 2 for b in ys)
+        xy = sum((a - x) * (b - y) for a, b in zip(xs, ys))
+        self.assertAlmostEqual(line["slope_ms"], xy / xx, delta=1e-3 * abs(xy / xx) + 1e-6)
+        self.assertAlmostEqual(line["intercept_ms"], y - x * xy / xx, delta=1e-3 * y)
+        self.assertAlmostEqual(line["r2"], xy * xy / (xx * yy), delta=1e-3)
+
+    def test_cost(self):
+        self.report(*SMALL)
+        report, _, page = self.load()
+        cost = report["cost"]
+        self.assertEqual((cost["method"], cost["width"], cost["height"], cost["n"]), ("grid", 96, 54, 2))
+        self.check_line(cost["share"], 11)
+        self.assertEqual([round(10 * x) for x, _ in cost["share"]["points"]], list(range(10, -1, -1)))
+        self.check_line(cost["pixels"], 6)
+        self.assertAlmostEqual(cost["pixels"]["points"][3][0], 96 * 54 * 1e-6, delta=1e-9)
+        self.assertIn("What the time grows with", page.text)
+
     def test_tables_of_others(self):
         table = {"title": "Stability & bounds", "columns": ["case", "worst"], "rows": [["a < b", 0.25], ["c", None]]}
         with open(self.path("table.json"), "w") as file:
