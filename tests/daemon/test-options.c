@@ -150,6 +150,34 @@ static void test_config_round_trip(void)
 	CHECK(memcmp(&defaults, &loaded, sizeof(defaults)) == 0);
 }
 
+/* The page as it is printed, and with every setting's comment sign taken away: both are the defaults. */
+static void test_whole_config(void)
+{
+	struct settings defaults, loaded;
+	struct error error = {""};
+	char *text = NULL;
+	size_t size = 0;
+	FILE *out = open_memstream(&text, &size);
+	configuration_print(out);
+	fclose(out);
+	settings_defaults(&defaults);
+	const char *path = file_with(text);
+	settings_defaults(&loaded);
+	CHECK_INT(load(&loaded, path, &error), 0);
+	CHECK(memcmp(&defaults, &loaded, sizeof(defaults)) == 0);
+	unlink(path);
+	for (char *c = text; *c; c++)
+		if ((c == text || c[-1] == '\n') && c[0] == '#' && c[1] != ' ' && c[1] != '\n')
+			*c = ' ';
+	path = file_with(text);
+	memset(&loaded, 0, sizeof(loaded));
+	CHECK_INT(load(&loaded, path, &error), 0);
+	CHECK_STRING(error.text, "");
+	CHECK(memcmp(&defaults, &loaded, sizeof(defaults)) == 0);
+	unlink(path);
+	free(text);
+}
+
 static void test_config_errors(void)
 {
 	struct settings settings;
@@ -324,6 +352,7 @@ int main(void)
 	RUN(test_refusals);
 	RUN(test_rates);
 	RUN(test_config_round_trip);
+	RUN(test_whole_config);
 	RUN(test_config_errors);
 	RUN(test_sections_refused);
 	RUN(test_many_sections);
