@@ -8,7 +8,7 @@ import sys
 import tempfile
 import unittest
 
-PURSUIT = os.environ["PURSUIT"]
+PURSUIT = os.environ.get("PURSUIT", "pursuit")
 
 
 def run(*arguments, **options):
