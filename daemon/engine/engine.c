@@ -99,6 +99,7 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 		engine->stream = 0;
 	}
 	engine->job = (struct job){.frame = frame};
+	engine->rested = engine->begun && !engine->moves && !engine->compensated;
 	engine->begun = engine->moves = engine->compensated = false;
 	engine->levels_made = LEVELS_NONE;
 	engine->n = params->n < 1 ? 1 : params->n > 8 ? 8 : params->n;

@@ -43,15 +43,17 @@ static void learn_damage(struct engine *engine, const struct pursuit_plane *colo
 	const struct frame *frame = engine->job.frame;
 	const struct pursuit_frame_header *header = &frame->header;
 	ui = ui ? ui : &none;
-	engine->damage.known = (header->flags & PURSUIT_FRAME_DAMAGE) && frame->stream && frame->stream == engine->stream &&
-						   header->damage_since == engine->frame_id && same_kind(color, &engine->color_plane) &&
-						   same_kind(ui, &engine->ui_plane);
+	engine->damage.comparable = frame->stream && frame->stream == engine->stream &&
+								same_kind(color, &engine->color_plane) && same_kind(ui, &engine->ui_plane);
+	engine->damage.known =
+		(header->flags & PURSUIT_FRAME_DAMAGE) && engine->damage.comparable && header->damage_since == engine->frame_id;
 	engine->damage.count = header->damage_count < PURSUIT_MAX_DAMAGE ? header->damage_count : PURSUIT_MAX_DAMAGE;
 	memcpy(engine->damage.rectangles, header->damage, sizeof(engine->damage.rectangles));
 	engine->stream = frame->stream;
 	engine->frame_id = header->frame_id;
 	engine->color_plane = *color;
 	engine->ui_plane = *ui;
+	engine->content_before = engine->content;
 	if (!engine->damage.known || engine->damage.count)
 		engine->content = now_ns();
 }

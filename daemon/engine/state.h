@@ -29,7 +29,8 @@ struct job {
 
 /* What is known to have changed since the frame begun before. */
 struct damage {
-	bool known; /* else everything may have */
+	bool known;      /* else everything may have */
+	bool comparable; /* ORIGINAL and UI are what the frame before, of the same stream and kind, left there */
 	uint32_t count;
 	struct pursuit_rectangle rectangles[PURSUIT_MAX_DAMAGE];
 };
@@ -53,6 +54,8 @@ struct engine {
 	struct pursuit_plane color_plane, ui_plane; /* as they were taken; role 0: none */
 	struct damage damage;
 	uint64_t content;        /* a number of ORIGINAL with its UI, never used twice */
+	uint64_t content_before; /* of the frame before */
+	bool rested;             /* the frame before did not move */
 	uint32_t width, height;  /* of its colour */
 	struct bounds ui_bounds; /* pixels of the UI that are not wholly transparent */
 	uint32_t n;

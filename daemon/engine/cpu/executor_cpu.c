@@ -37,6 +37,7 @@ static void destroy(struct executor **executor)
 	free(gone->scratch);
 	free(gone->weights.values);
 	free(gone->intake.bounds);
+	free(gone->intake.hashes);
 	free(gone);
 	*executor = NULL;
 }

@@ -5,6 +5,10 @@
 #ifndef PURSUIT_ENGINE_CPU_EXECUTOR_CPU_H
 #define PURSUIT_ENGINE_CPU_EXECUTOR_CPU_H
 
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+
 #include "daemon/engine/cpu/bins.h"
 #include "daemon/engine/cpu/canvas.h"
 #include "daemon/engine/cpu/layers.h"
@@ -28,6 +32,15 @@ struct intake {
 	struct bounds *bounds;  /* of each block of rows of the UI */
 	size_t bounds_capacity; /* blocks */
 	bool under_way;
+	uint64_t bytes; /* of the pictures */
+	/* Rows that are as they were, of a picture that did not move: pass_upload.c. */
+	uint64_t *hashes; /* of rows of colour, then of the UI */
+	size_t hashes_capacity;
+	bool looks;          /* hashes are made of this frame */
+	bool compares;       /* and compared with those of the frame before */
+	bool hashed;         /* those of the frame taken last are there */
+	atomic_bool differs; /* from the frame before, which then need not be looked at further */
+	uint32_t not_before; /* frames that pass before it looks again */
 };
 
 struct executor_cpu {

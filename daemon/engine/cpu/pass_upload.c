@@ -4,15 +4,35 @@
 /*
  * Colour and UI into pictures of our own, as the display's code values and opaque. It only begins here: the planes are
  * taken while the frame is analysed, and engine_begin() does not return before they are.
+ *
+ * After a frame that did not move, rows are looked at first, and those that are as they were are left there; if all
+ * are, the picture is what it was, and presenters that have it are given none. A frame that does differ costs a look at
+ * a few rows, and none for the next few frames.
  */
 #include "daemon/engine/cpu/executor_cpu.h"
 
 #include <errno.h>
 #include <stdlib.h>
 
+#include "daemon/engine/cpu/row_hash.h"
 #include "daemon/engine/pass.h"
 
 #define ROWS_OF_ITEM 16u
+/* Frames that are not looked at, after one that was and differed. */
+#define LOOK_AGAIN_AFTER 15u
+
+/* Is the row as it was in the frame before? Only that of a frame that is looked at may be. */
+static bool as_it_was(struct intake *intake, uint32_t row, const uint8_t *from, const struct pursuit_plane *plane)
+{
+	if (!intake->looks || atomic_load_explicit(&intake->differs, memory_order_relaxed))
+		return false;
+	const size_t pixel_bytes = plane->format == PURSUIT_FORMAT_RGBA16F ? 8 : 4;
+	const uint64_t hash = row_hash(from, pixel_bytes * plane->width), before = intake->hashes[row];
+	intake->hashes[row] = hash;
+	if (intake->compares && hash != before)
+		atomic_store_explicit(&intake->differs, true, memory_order_relaxed);
+	return intake->compares && hash == before;
+}
 
 static void take_rows(struct engine *engine, enum picture_id id, uint32_t item)
 {
@@ -27,10 +47,12 @@ static void take_rows(struct engine *engine, enum picture_id id, uint32_t item)
 		if (opaque && !planes_changed(engine, y, 1))
 			continue;
 		const uint8_t *from = engine->job.frame->planes[index] + (size_t)y * plane->stride;
-		convert_row(convert, canvas_row(canvas, y), from, plane->width, opaque);
-		if (opaque)
+		const bool same = as_it_was(intake, opaque ? y : intake->engine->height + y, from, plane);
+		if (!same)
+			convert_row(convert, canvas_row(canvas, y), from, plane->width, opaque);
+		if (opaque && !same)
 			canvas_close_row(canvas, y);
-		else
+		else if (!opaque)
 			bounds_widen(&bounds, canvas_row(canvas, y), plane->width, y);
 	}
 	if (!opaque)
@@ -52,6 +74,40 @@ static int reserve(struct intake *intake, size_t blocks, struct error *error)
 	intake->bounds = malloc(blocks * sizeof(*intake->bounds));
 	intake->bounds_capacity = intake->bounds ? blocks : 0;
 	return intake->bounds ? 0 : error_set(error, -ENOMEM, "out of memory for %zu blocks of rows", blocks);
+}
+
+static void plan_look(struct engine *engine, struct intake *intake)
+{
+	const size_t rows = 2 * (size_t)engine->height;
+	const bool may = engine->damage.comparable && !engine->damage.known && engine->rested;
+	intake->looks = may && intake->not_before == 0;
+	intake->not_before -= intake->not_before > 0;
+	if (intake->looks && rows > intake->hashes_capacity) {
+		free(intake->hashes);
+		intake->hashes = malloc(rows * sizeof(*intake->hashes));
+		intake->hashes_capacity = intake->hashes ? rows : 0;
+		intake->hashed = false;
+	}
+	intake->looks &= intake->hashes != NULL;
+	intake->compares = intake->looks && intake->hashed;
+	intake->hashed = false;
+	atomic_store(&intake->differs, false);
+}
+
+/* All rows are there. */
+static void conclude_look(struct engine *engine, struct intake *intake)
+{
+	const bool differs = atomic_load(&intake->differs);
+	intake->hashed = intake->looks && !differs;
+	if (differs)
+		intake->not_before = LOOK_AGAIN_AFTER;
+	if (!intake->compares || differs)
+		return;
+	engine->damage.known = true;
+	engine->damage.count = 0;
+	engine->content = engine->content_before;
+	engine->report.bytes_up -= intake->bytes;
+	report_leave_out(&engine->report, "upload", "unchanged");
 }
 
 static int run(struct engine *engine, struct error *error)
@@ -76,11 +132,13 @@ static int run(struct engine *engine, struct error *error)
 		result = reserve(intake, items, error);
 	if (result < 0)
 		return result;
+	plan_look(engine, intake);
 	intake->engine = engine;
 	intake->color_items = items;
 	intake->under_way = true;
 	pool_start(executor->base.pool, take, intake, intake->ui >= 0 ? 2 * items : items);
-	engine->report.bytes_up += 4 * (uint64_t)engine->width * engine->height * (intake->ui >= 0 ? 2 : 1);
+	intake->bytes = 4 * (uint64_t)engine->width * engine->height * (intake->ui >= 0 ? 2 : 1);
+	engine->report.bytes_up += intake->bytes;
 	return 0;
 }
 
@@ -104,10 +162,14 @@ void cpu_finish_intake(struct engine *engine)
 	pool_finish(executor->base.pool);
 	for (uint32_t i = 0; i < executor->intake.color_items && executor->intake.ui >= 0; i++)
 		unite(&engine->ui_bounds, &executor->intake.bounds[i]);
+	conclude_look(engine, &executor->intake);
 }
 
 static int analyse(struct engine *engine, struct error *error)
 {
+	/* What is as it was rests, and needs no look at its motion. */
+	if (cpu_of(engine)->intake.compares)
+		cpu_finish_intake(engine);
 	int result = pass_analyse.run(engine, error);
 	cpu_finish_intake(engine);
 	return result;
