@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -106,6 +107,8 @@ static void add_cost(struct render *render, struct cost *cost, uint64_t start_ns
 	const uint64_t run_ns = clock_now(render->clock) - start_ns;
 	cost_add(cost, run_ns);
 	render->work_ns += run_ns;
+	if (cost != &render->real_cost)
+		busy_add(&render->busy, start_ns, start_ns + run_ns);
 }
 
 /* Queues a picture for a vblank; -ETIME if it is over, and the picture is the caller's still. */
@@ -269,12 +272,24 @@ static void give_hint(struct render *render, const struct pacer_decision *decisi
 	stream_hint(render->stream, decision->frame_id, render->showing.next_submit_ns, decision->interval_ns);
 }
 
+/* What the way of a frame to its picture took beyond the engine's work; a frame that came too early waits by intent. */
+static void count_overhead(struct render *render, const struct engine_report *report)
+{
+	const uint64_t submit_ns = render->frame.header.submit_ns, hold_ns = render->hold_until_ns;
+	const uint64_t ready_ns = render->showing.pictures[render->serial % SHOWING_PICTURES].ready_ns;
+	const uint64_t from_ns = submit_ns > hold_ns ? submit_ns : hold_ns;
+	const double work_ns = report->total_ms * 1e6 + (double)busy_within(&render->busy, from_ns, ready_ns);
+	if (submit_ns != 0 && from_ns < ready_ns)
+		histogram_add(&render->stats->spans.overhead, (int64_t)fmax(0.0, (double)(ready_ns - from_ns) - work_ns));
+}
+
 /* What is known once the frame has its vblank. */
 static void settle_real(struct render *render, const struct pacer_decision *decision, uint64_t vblank)
 {
 	const struct engine_report *report = engine_get_report(render->engine);
 	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
 	showing_plan(&render->showing, vblank, SHOWING_REAL);
+	count_overhead(render, report);
 	render->n = decision->n;
 	render->real_vblank = vblank;
 	render->next_vblank = vblank + 1;

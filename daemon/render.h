@@ -19,6 +19,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "daemon/busy.h"
 #include "daemon/cost.h"
 #include "daemon/engine/engine.h"
 #include "daemon/governor.h"
@@ -90,6 +91,7 @@ struct render {
 		uint64_t first_ns, last_ns; /* when that was */
 	} unanswered;
 	struct cost real_cost, between_cost, plain_cost;
+	struct busy busy; /* with pictures other than real ones */
 	struct governor governor;
 	bool passes_through;   /* the engine makes nothing of frames but a picture */
 	uint64_t work_ns;      /* drawing since the last real frame began */

@@ -4,6 +4,7 @@
 #include "daemon/slices.h"
 
 #include <errno.h>
+#include <sched.h>
 #include <stdint.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -25,6 +26,8 @@ void slices_shorten(const struct log *log)
 {
 	const struct scheduling scheduling = {
 		.size = sizeof(scheduling), .nice = getpriority(PRIO_PROCESS, (id_t)gettid()), .runtime_ns = SLICE_NS};
+	if (sched_getscheduler(0) != SCHED_OTHER)
+		return; /* somebody has given it a real-time priority */
 	if (syscall(SYS_sched_setattr, 0, &scheduling, 0) < 0)
 		log_debug(log, "rendering with slices of the default length (%s)", strerror(errno));
 }

@@ -151,6 +151,7 @@ json_t *stats_json(const struct stats *stats)
 	json_object_set_new(object, "vblank_ms", json_real(round(stats->vblank_ns) / 1e6));
 	json_object_set_new(object, "engine_ms", span_json(&stats->spans.engine));
 	json_object_set_new(object, "submit_to_flip_ms", span_json(&stats->spans.submit_to_flip));
+	json_object_set_new(object, "overhead_ms", span_json(&stats->spans.overhead));
 	json_object_set_new(object, "flip_error_ms", span_json(&stats->spans.flip_error));
 	json_object_set_new(object, "flip_time_sources", time_sources_json(stats));
 	json_object_set_new(object, "governor", governor_json(&stats->governor));

@@ -70,6 +70,7 @@ struct stats {
 	/* last: see stats_publish() */
 	struct stats_spans {
 		struct histogram engine, submit_to_flip, flip_error; /* ns */
+		struct histogram overhead; /* from a real frame's submission to its picture, less the engine's work meanwhile */
 	} spans;
 	uint64_t spans_count; /* of a copy: rows when the spans were copied */
 	struct stats_row timeline[STATS_TIMELINE];

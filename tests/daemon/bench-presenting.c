@@ -81,8 +81,8 @@ static struct pursuit_stream *open_stream(const struct size *size)
 	return pursuit_open(&params);
 }
 
-/* A half of 0 or 4 pixels of motion, in the middle third. */
-static void draw(struct pursuit_frame *frame, bool moves)
+/* Noise; the middle third moves by 4 pixels to the left (as a half: 0xc400) from each slot to the next. */
+static void draw(struct pursuit_frame *frame, bool moves, uint32_t slot)
 {
 	const uint32_t width = frame->color.width, height = frame->color.height;
 	for (uint32_t y = 0; y < height; y++) {
@@ -91,9 +91,10 @@ static void draw(struct pursuit_frame *frame, bool moves)
 		uint16_t *motion = (uint16_t *)(void *)(frame->motion.data + y * frame->motion.stride);
 		for (uint32_t x = 0; x < width; x++) {
 			const bool inside = x > width / 3 && x < width * 2 / 3 && y > height / 3 && y < height * 2 / 3;
-			color[x] = 0xff000000u | (x * 2654435761u ^ y * 40503u) >> 8;
+			const uint32_t place = x + (inside && moves ? 4 * slot : 0);
+			color[x] = 0xff000000u | (place * 2654435761u ^ y * 40503u) >> 8;
 			depth[x] = inside ? 0.3f : 0.6f;
-			motion[2 * x] = moves && inside ? 0x4400 : 0;
+			motion[2 * x] = moves && inside ? 0xc400 : 0;
 			motion[2 * x + 1] = 0;
 		}
 	}
@@ -115,7 +116,7 @@ static void play(struct pursuit_stream *stream, enum content content, double pla
 		while (slot < 7 && drawn[slot] && drawn[slot] != frame->color.data)
 			slot++;
 		if (drawn[slot] != frame->color.data)
-			draw(frame, content == MOVING);
+			draw(frame, content == MOVING, slot);
 		drawn[slot] = frame->color.data;
 		frame->time_ns = next_ns;
 		frame->flags |= content == DECLARED ? PURSUIT_FLAG_DAMAGE : 0u;

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include "daemon/busy.h"
 #include "daemon/cost.h"
 #include "daemon/showing.h"
 #include "daemon/stats.h"
@@ -169,6 +170,19 @@ static void test_json(void)
 	json_decref(object);
 }
 
+static void test_busy(void)
+{
+	struct busy busy = {.count = 0};
+	CHECK_INT(busy_within(&busy, 0, UINT64_MAX), 0);
+	for (uint64_t i = 0; i < 20; i++) /* [0, 30), [100, 130), ...: the first four are forgotten */
+		busy_add(&busy, 100 * i, 100 * i + 30);
+	CHECK_INT(busy_within(&busy, 0, UINT64_MAX), 16 * 30);
+	CHECK_INT(busy_within(&busy, 1000, 1200), 60);
+	CHECK_INT(busy_within(&busy, 1010, 1120), 40);
+	CHECK_INT(busy_within(&busy, 1030, 1100), 0);
+	CHECK_INT(busy_within(&busy, 1200, 1000), 0);
+}
+
 int main(void)
 {
 	RUN(test_percentiles);
@@ -176,5 +190,6 @@ int main(void)
 	RUN(test_costs);
 	RUN(test_figures);
 	RUN(test_json);
+	RUN(test_busy);
 	return test_result();
 }
