@@ -190,6 +190,32 @@ static uint32_t top_of(const struct kms_mode *mode, uint32_t height)
 	return (mode->height - height) / 2;
 }
 
+static void try_scaler(struct kms *kms, const struct kms_buffer *buffer, const struct kms_rectangle *part)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	pthread_mutex_lock(&kms->lock);
+	const bool ours = !kms->away;
+	kms->scales =
+		(part->width < mode->width || part->height < mode->height) && kms_device_can_scale(kms->device, buffer, part);
+	pthread_mutex_unlock(&kms->lock);
+	if (!ours)
+		return; /* asked again when the display is */
+	kms->tried_width = part->width;
+	kms->tried_height = part->height;
+	log_info(kms->params.log, "kms: pictures of %ux%u on %ux%u: %s", part->width, part->height, mode->width,
+			 mode->height, kms->scales ? "enlarged by the display controller" : "as they are");
+}
+
+/* The controller enlarges a picture that is smaller than the display, if it can; else there is black around it. */
+static void choose_part(struct kms *kms, struct kms_buffer *buffer, uint32_t width, uint32_t height)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	const struct kms_rectangle part = {left_of(mode, width), top_of(mode, height), width, height};
+	if (kms->tried_width != width || kms->tried_height != height)
+		try_scaler(kms, buffer, &part);
+	buffer->part = kms->scales ? part : (struct kms_rectangle){0, 0, 0, 0};
+}
+
 static void place(struct kms *kms, struct kms_picture *picture, uint32_t width, uint32_t height,
 				  struct presenter_image *image)
 {
@@ -197,6 +223,7 @@ static void place(struct kms *kms, struct kms_picture *picture, uint32_t width, 
 	const bool same = picture->width == width && picture->height == height;
 	if (!same)
 		memset(picture->buffer.data, 0, picture->buffer.size);
+	choose_part(kms, &picture->buffer, width, height);
 	image->holds = same ? picture->holds : 0;
 	picture->holds = 0;
 	picture->in_gl = false;
@@ -213,6 +240,7 @@ static void place_in_gl(struct kms *kms, struct kms_picture *picture, uint32_t w
 	const bool same = picture->gl_width == width && picture->gl_height == height;
 	if (!same)
 		kms_gl_blacken(kms->gl, &picture->gl);
+	choose_part(kms, &picture->gl_buffer, width, height);
 	image->holds = same ? picture->gl_holds : 0;
 	picture->gl_holds = 0;
 	picture->in_gl = true;

@@ -64,8 +64,10 @@ struct kms {
 	bool running, stop, away, lost;
 	struct kms_picture pictures[FLIPS_IMAGES]; /* of an acquired one: the render thread's */
 	uint32_t refused_width, refused_height;    /* the render thread's: said already */
-	struct error loss;                         /* does not change once `lost` is set */
-	uint64_t heard_ns;                         /* of the display */
+	uint32_t tried_width, tried_height;        /* the render thread's: does the controller enlarge these pictures? */
+	bool scales;
+	struct error loss; /* does not change once `lost` is set */
+	uint64_t heard_ns; /* of the display */
 
 	/* the event thread's own */
 	struct presenter_flip reports[KMS_REPORTS];

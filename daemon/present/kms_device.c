@@ -80,18 +80,6 @@ static drmModeModeInfo mode_to_kernel(const struct kms_mode *mode)
 	return info;
 }
 
-static void list_modes(const struct kms_mode *modes, size_t count, char *text, size_t size)
-{
-	char one[48], last[48] = "";
-	size_t used = 0;
-	for (size_t i = 0; i < count && used + 40 < size; i++) {
-		kms_mode_print(&modes[i], one, sizeof(one));
-		if (strcmp(one, last) != 0)
-			used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", one);
-		snprintf(last, sizeof(last), "%s", one);
-	}
-}
-
 static int choose_mode(struct kms_device *device, const drmModeConnector *connector, const struct kms_mode_wish *wish,
 					   struct error *error)
 {
@@ -104,7 +92,7 @@ static int choose_mode(struct kms_device *device, const drmModeConnector *connec
 	for (size_t i = 0; i < count; i++)
 		modes[i] = mode_from_kernel(&connector->modes[i]);
 	const int chosen = kms_mode_choose(modes, count, wish);
-	list_modes(modes, count, list, sizeof(list));
+	kms_mode_list(modes, count, list, sizeof(list));
 	if (chosen >= 0) {
 		device->mode = modes[chosen];
 		device->timings = connector->modes[chosen];
@@ -476,11 +464,24 @@ int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t
 
 /* ---- showing ---- */
 
+static void add_places(const struct kms_device *device, const struct kms_buffer *buffer, drmModeAtomicReq *request)
+{
+	const struct kms_atomic *atomic = &device->atomic;
+	const struct kms_rectangle whole = {0, 0, device->mode.width, device->mode.height};
+	const struct kms_rectangle from = buffer->part.width ? buffer->part : whole;
+	const struct kms_rectangle to = buffer->part.width ? kms_mode_fit(&device->mode, &from) : whole;
+	const uint64_t source[4] = {(uint64_t)from.x << 16, (uint64_t)from.y << 16, (uint64_t)from.width << 16,
+								(uint64_t)from.height << 16};
+	const uint64_t target[4] = {to.x, to.y, to.width, to.height};
+	for (int i = 0; i < 4; i++) {
+		drmModeAtomicAddProperty(request, atomic->plane, atomic->source[i], source[i]);
+		drmModeAtomicAddProperty(request, atomic->plane, atomic->target[i], target[i]);
+	}
+}
+
 static int commit(const struct kms_device *device, const struct kms_buffer *buffer, uint32_t flags)
 {
 	const struct kms_atomic *atomic = &device->atomic;
-	const uint64_t width = device->mode.width, height = device->mode.height;
-	const uint64_t source[4] = {0, 0, width << 16, height << 16}, target[4] = {0, 0, width, height};
 	drmModeAtomicReq *request = drmModeAtomicAlloc();
 	if (!request)
 		return -ENOMEM;
@@ -489,15 +490,20 @@ static int commit(const struct kms_device *device, const struct kms_buffer *buff
 		drmModeAtomicAddProperty(request, device->crtc, atomic->crtc_mode, atomic->mode_blob);
 		drmModeAtomicAddProperty(request, device->crtc, atomic->crtc_active, 1);
 		drmModeAtomicAddProperty(request, atomic->plane, atomic->plane_crtc, device->crtc);
-		for (int i = 0; i < 4; i++) {
-			drmModeAtomicAddProperty(request, atomic->plane, atomic->source[i], source[i]);
-			drmModeAtomicAddProperty(request, atomic->plane, atomic->target[i], target[i]);
-		}
 	}
+	add_places(device, buffer, request);
 	drmModeAtomicAddProperty(request, atomic->plane, atomic->plane_framebuffer, buffer->framebuffer);
 	const int result = drmModeAtomicCommit(device->fd, request, flags, (void *)(uintptr_t)device);
 	drmModeAtomicFree(request);
 	return result;
+}
+
+bool kms_device_can_scale(const struct kms_device *device, const struct kms_buffer *buffer,
+						  const struct kms_rectangle *part)
+{
+	struct kms_buffer scaled = *buffer;
+	scaled.part = *part;
+	return device->atomic.usable && !device->away && commit(device, &scaled, DRM_MODE_ATOMIC_TEST_ONLY) == 0;
 }
 
 static int set_mode(struct kms_device *device, const struct kms_buffer *buffer)

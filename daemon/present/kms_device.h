@@ -41,6 +41,8 @@ struct kms_buffer {
 	uint8_t *data; /* mapped; write only, reading may be slow */
 	size_t stride, size;
 	uint32_t handle, framebuffer;
+	/* What of it is shown, as large as fits and its shape kept; width 0: all. Only what kms_device_can_scale(). */
+	struct kms_rectangle part;
 };
 
 struct kms_events {
@@ -72,6 +74,10 @@ void kms_device_destroy_buffer(struct kms_device *device, struct kms_buffer *buf
  */
 int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t stride, struct kms_buffer *buffer,
 							struct error *error);
+
+/* Would the display show this part of the buffer, enlarged by its controller? Asked without changing anything. */
+bool kms_device_can_scale(const struct kms_device *device, const struct kms_buffer *buffer,
+						  const struct kms_rectangle *part);
 
 /* Lights the display up with this buffer; waits until it is. */
 int kms_device_show(struct kms_device *device, const struct kms_buffer *buffer, struct error *error);

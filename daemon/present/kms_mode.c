@@ -194,3 +194,27 @@ void kms_mode_print(const struct kms_mode *mode, char *text, size_t size)
 {
 	snprintf(text, size, "%ux%u@%.6g", mode->width, mode->height, round(kms_mode_refresh_hz(mode) * 1000.0) / 1000.0);
 }
+
+void kms_mode_list(const struct kms_mode *modes, size_t count, char *text, size_t size)
+{
+	char one[48], last[48] = "";
+	size_t used = 0;
+	for (size_t i = 0; i < count && used + 40 < size; i++) {
+		kms_mode_print(&modes[i], one, sizeof(one));
+		if (strcmp(one, last) != 0)
+			used += (size_t)snprintf(text + used, size - used, "%s%s", used ? ", " : "", one);
+		snprintf(last, sizeof(last), "%s", one);
+	}
+}
+
+struct kms_rectangle kms_mode_fit(const struct kms_mode *mode, const struct kms_rectangle *part)
+{
+	struct kms_rectangle to = {0, 0, mode->width, mode->height};
+	if ((uint64_t)to.width * part->height > (uint64_t)to.height * part->width)
+		to.width = (uint32_t)((uint64_t)to.height * part->width / part->height);
+	else
+		to.height = (uint32_t)((uint64_t)to.width * part->height / part->width);
+	to.x = (mode->width - to.width) / 2;
+	to.y = (mode->height - to.height) / 2;
+	return to;
+}

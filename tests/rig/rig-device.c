@@ -4,6 +4,7 @@
 /* A display controller through atomic calls and through the older ones: modes, flips, counts, what it refuses. */
 #include <errno.h>
 #include <poll.h>
+#include <xf86drmMode.h>
 
 #include "daemon/present/kms_device.h"
 #include "tests/test.h"
@@ -28,6 +29,54 @@ static void on_flipped(void *data, uint64_t sequence)
 	struct heard *heard = data;
 	heard->flipped = sequence;
 	heard->flips++;
+}
+
+/* ---- a display that enlarges, which the kernel's virtual one does not ---- */
+
+static struct {
+	bool on;
+	uint64_t source[4], target[4]; /* of the last commit: x, y, width, height */
+	uint32_t names[8];             /* the properties' numbers, as they first came: source and target in turn */
+} scaler;
+
+int __real_drmModeAtomicAddProperty(drmModeAtomicReq *request, uint32_t object, uint32_t property, uint64_t value);
+int __wrap_drmModeAtomicAddProperty(drmModeAtomicReq *request, uint32_t object, uint32_t property, uint64_t value);
+
+/* Notes what it was asked for, and asks the kernel for the whole buffer instead. */
+int __wrap_drmModeAtomicAddProperty(drmModeAtomicReq *request, uint32_t object, uint32_t property, uint64_t value)
+{
+	static const uint64_t whole[8] = {0, 0, 0, 0, 160u << 16, 160, 120u << 16, 120};
+	for (uint32_t i = 0; scaler.on && i < 8; i++)
+		if (scaler.names[i] == property) {
+			(i % 2 == 0 ? scaler.source : scaler.target)[i / 2] = value;
+			value = whole[i];
+			break;
+		}
+	return __real_drmModeAtomicAddProperty(request, object, property, value);
+}
+
+static uint32_t find_plane_property(int fd, const char *name)
+{
+	drmModePlaneRes *planes = drmModeGetPlaneResources(fd);
+	drmModeObjectProperties *properties = drmModeObjectGetProperties(fd, planes->planes[0], DRM_MODE_OBJECT_PLANE);
+	uint32_t found = 0;
+	for (uint32_t i = 0; i < properties->count_props; i++) {
+		drmModePropertyRes *property = drmModeGetProperty(fd, properties->props[i]);
+		if (strcmp(property->name, name) == 0)
+			found = property->prop_id;
+		drmModeFreeProperty(property);
+	}
+	drmModeFreeObjectProperties(properties);
+	drmModeFreePlaneResources(planes);
+	return found;
+}
+
+static void turn_scaler_on(struct kms_device *device)
+{
+	static const char *const names[8] = {"SRC_X", "CRTC_X", "SRC_Y", "CRTC_Y", "SRC_W", "CRTC_W", "SRC_H", "CRTC_H"};
+	for (int i = 0; i < 8; i++)
+		scaler.names[i] = find_plane_property(kms_device_get_fd(device), names[i]);
+	scaler.on = true;
 }
 
 static struct kms_device *open_device(bool legacy, const char *mode)
@@ -109,6 +158,34 @@ static void test_legacy(void)
 	test_flips(true);
 }
 
+/* Part of a buffer: refused where the display cannot enlarge, else as large as fits and centred, with each flip. */
+static void test_scaling(void)
+{
+	struct kms_device *device = open_device(false, "160x120@120");
+	const struct kms_rectangle part = {48, 40, 64, 40};
+	struct kms_buffer buffers[2];
+	struct error error;
+	if (!device)
+		return;
+	for (int i = 0; i < 2; i++)
+		CHECK_INT(kms_device_create_buffer(device, &buffers[i], &error), 0);
+	CHECK_INT(kms_device_show(device, &buffers[1], &error), 0);
+	CHECK(!kms_device_can_scale(device, &buffers[0], &part));
+	turn_scaler_on(device);
+	CHECK(kms_device_can_scale(device, &buffers[0], &part));
+	CHECK_INT(buffers[0].part.width, 0);
+	buffers[0].part = part;
+	CHECK_INT(kms_device_flip(device, &buffers[0]), 0);
+	CHECK(scaler.source[0] == 48 << 16 && scaler.source[1] == 40 << 16);
+	CHECK(scaler.source[2] == 64 << 16 && scaler.source[3] == 40 << 16);
+	CHECK(scaler.target[0] == 0 && scaler.target[1] == 10 && scaler.target[2] == 160 && scaler.target[3] == 100);
+	scaler.on = false;
+	kms_device_restore(device);
+	for (int i = 0; i < 2; i++)
+		kms_device_destroy_buffer(device, &buffers[i]);
+	kms_device_destroy(&device);
+}
+
 /* By rate alone: the display lists 60 Hz. By size alone: what it lists of that size. */
 static void test_listed_modes(void)
 {
@@ -142,6 +219,7 @@ int main(void)
 {
 	RUN(test_atomic);
 	RUN(test_legacy);
+	RUN(test_scaling);
 	RUN(test_listed_modes);
 	RUN(test_mode_beyond_the_display);
 	return test_result();
