@@ -29,6 +29,13 @@ double reference_to_light(const struct reference_transfer *transfer, double code
 	}
 }
 
+double reference_half_step(const struct reference_transfer *transfer, double code)
+{
+	const double low = fmax(code - 0.5 / 255.0, 0.0), high = fmin(code + 0.5 / 255.0, 1.0);
+	const double light = reference_to_light(transfer, code);
+	return fmax(reference_to_light(transfer, high) - light, light - reference_to_light(transfer, low));
+}
+
 double reference_from_light(const struct reference_transfer *transfer, double light)
 {
 	switch (transfer->curve) {

@@ -146,14 +146,6 @@ static void judged_frame_finish(struct judged_frame *frame)
 
 /* ---- light ---- */
 
-/* The most that rounding a code value moves its light. */
-static double half_step(const struct reference_transfer *display, double code)
-{
-	const double light = reference_to_light(display, code);
-	return fmax(reference_to_light(display, fmin(1.0, code + 0.5 / 255.0)) - light,
-				light - reference_to_light(display, fmax(0.0, code - 0.5 / 255.0)));
-}
-
 static void fill_shown(struct shown *shown, const struct exact *exact, const struct engine_request *request)
 {
 	const struct reference *reference = exact->reference;
@@ -169,7 +161,7 @@ static void fill_shown(struct shown *shown, const struct exact *exact, const str
 		shown->before[i][c] = (float)before;
 		shown->after[i][c] = (float)after;
 		shown->rounding[i][c] = (float)(after - before);
-		shown->half_step[i][c] = (float)half_step(display, code);
+		shown->half_step[i][c] = (float)reference_half_step(display, code);
 	}
 	free(codes);
 	free(rounded);

@@ -30,6 +30,8 @@ struct reference_transfer {
 };
 
 double reference_to_light(const struct reference_transfer *transfer, double code);
+/* The most that rounding a code value (0 to 1) to 8 bits moves its light: half a step. */
+double reference_half_step(const struct reference_transfer *transfer, double code);
 double reference_from_light(const struct reference_transfer *transfer, double light);
 double reference_smoothstep(double a, double b, double x);
 /* code8 [0]. `bias` (0 in the method) shifts the rounding: floor(255 clamp(x) + 0.5 + bias). */

@@ -88,14 +88,6 @@ static void paint_pairs(const struct input *input)
 			}
 }
 
-/* Half a step of a code value in light: what rounding may do. */
-static double half_step(const struct reference_transfer *display, double code)
-{
-	const double low = fmax(code - 0.5 / 255.0, 0.0), high = fmin(code + 0.5 / 255.0, 1.0);
-	const double light = reference_to_light(display, code);
-	return fmax(reference_to_light(display, high) - light, light - reference_to_light(display, low));
-}
-
 static void check_pictures(struct suite *suite, const struct input *input, const struct reference_transfer *display,
 						   uint32_t n, const char *where)
 {
@@ -111,7 +103,7 @@ static void check_pictures(struct suite *suite, const struct input *input, const
 		if (i % 4 == 3)
 			continue;
 		const double light = reference_to_light(display, e) / n + share * reference_to_light(display, b);
-		const double allowed = half_step(display, e) / n + share * half_step(display, b);
+		const double allowed = reference_half_step(display, e) / n + share * reference_half_step(display, b);
 		const double off = fabs(light - reference_to_light(display, original[at] / 255.0));
 		worst = fmax(worst, off / allowed);
 	}
