@@ -302,7 +302,7 @@ static void pause_once(struct render *render)
 	}
 	if (render->pause_vblanks >= SLEEP_AFTER) {
 		render->presenter->impl->pause(render->presenter);
-		render->showing.last_flip_ns = 0;
+		render->showing.last_target_ns = 0;
 		render->paused = true;
 	}
 }

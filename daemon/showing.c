@@ -97,13 +97,14 @@ static enum showing_plan plan_of(const struct showing *showing, uint64_t vblank)
 static void count_due(struct showing *showing, const struct presenter_flip *flip, bool on_time)
 {
 	struct stats *stats = showing->stats;
-	const uint64_t before = showing->last_flip_ns;
+	const uint64_t before = showing->last_target_ns;
 	stats->vblanks_due += 1 + (before ? flip->skipped : 0);
 	stats->vblanks_on_time += on_time && !flip->late;
 	stats->late_flips += flip->late;
-	stats->active_ns += before && flip->flip_ns > before ? flip->flip_ns - before : (uint64_t)showing->period_ns;
+	/* By the grid: a flip that comes late takes nothing from the time of the next. */
+	stats->active_ns += before && flip->target_ns > before ? flip->target_ns - before : (uint64_t)showing->period_ns;
 	histogram_add(&stats->spans.flip_error, llabs((int64_t)(flip->flip_ns - flip->target_ns)));
-	showing->last_flip_ns = flip->flip_ns;
+	showing->last_target_ns = flip->target_ns;
 }
 
 static void count_first_flip(struct showing *showing, struct showing_frame *frame, const struct presenter_flip *flip,
@@ -136,7 +137,7 @@ static enum stats_show count_picture(struct showing *showing, const struct prese
 	case STATS_REPEAT: /* the plain picture of a pause */
 	case STATS_STANDBY:
 	case STATS_KEPT:
-		showing->last_flip_ns = 0;
+		showing->last_target_ns = 0;
 		return STATS_REPEAT;
 	}
 	showing->stats->displayed_frames++;
@@ -161,7 +162,7 @@ static enum stats_show count_kept(struct showing *showing, const struct presente
 {
 	const enum showing_plan plan = plan_of(showing, flip->vblank);
 	if (plan == SHOWING_PAUSE || (plan == SHOWING_UNDECIDED && showing->pausing)) {
-		showing->last_flip_ns = 0;
+		showing->last_target_ns = 0;
 		return STATS_REPEAT;
 	}
 	if (flip->shown == PRESENTER_KEPT && plan == SHOWING_REPEAT) {

@@ -55,7 +55,7 @@ struct showing {
 	} plans[SHOWING_VBLANKS];
 	struct showing_frame frames[SHOWING_FRAMES];
 	uint64_t front_group;
-	uint64_t last_flip_ns;   /* of the vblank before, if one was due then; otherwise 0 */
+	uint64_t last_target_ns; /* of the vblank before, if one was due then; otherwise 0 */
 	uint64_t next_submit_ns; /* hint that goes into reports */
 	bool pausing;            /* an undecided vblank is no miss */
 	double period_ns;        /* between vblanks, as known now */

@@ -139,6 +139,31 @@ static void test_figures(void)
 	free(control);
 }
 
+/* However late flips are, no more pictures are displayed a second than the display has vblanks. */
+static void test_displayed_hz(void)
+{
+	struct showing showing;
+	memset(&stats, 0, sizeof(stats));
+	showing_init(&showing, &stats);
+	showing.period_ns = (double)PERIOD;
+	for (uint64_t vblank = 100; vblank < 160; vblank++) {
+		const uint64_t late_ns = vblank % 30 < 3 ? (3 - vblank % 30) * PERIOD * 9 / 10 : 0;
+		const struct presenter_flip event = {.vblank = vblank,
+											 .target_ns = vblank * PERIOD,
+											 .flip_ns = vblank * PERIOD + late_ns,
+											 .serial = vblank,
+											 .group = 1,
+											 .late = late_ns >= PERIOD,
+											 .shown = PRESENTER_PICTURE};
+		const uint64_t frames = stats.displayed_frames, active_ns = stats.active_ns;
+		draw(&showing, vblank, STATS_IN_BETWEEN, 1, vblank);
+		showing_flip(&showing, &event);
+		CHECK_INT(stats.displayed_frames, frames + 1);
+		CHECK_INT(stats.active_ns - active_ns, PERIOD);
+	}
+	showing_finish(&showing);
+}
+
 static void test_json(void)
 {
 	struct engine_report report = {.pass_count = 1, .left_out_count = 1, .total_ms = 2.5};
@@ -190,6 +215,7 @@ int main(void)
 	RUN(test_costs);
 	RUN(test_figures);
 	RUN(test_json);
+	RUN(test_displayed_hz);
 	RUN(test_busy);
 	return test_result();
 }
