@@ -18,6 +18,7 @@
 #define MIN_CELL_WIDTH 320u
 #define GAP 10u
 #define LETTER_SCALE 2u
+#define INK 0xffebebebu
 #define LINE (LETTER_SCALE * (LETTER_HEIGHT + 4u))
 /* So much of the error may be beyond white. */
 #define CLIPPED_SHARE 0.002
@@ -137,23 +138,10 @@ static uint32_t error_factor(const struct contact *contact)
 	return factor;
 }
 
-static void put_pixel(const struct sheet *sheet, uint32_t x, uint32_t y, uint8_t grey)
-{
-	if (x >= sheet->width || y >= sheet->height)
-		return;
-	uint8_t *pixel = sheet->data + 4 * ((size_t)y * sheet->width + x);
-	memset(pixel, grey, 3);
-}
-
 static void put_text(const struct sheet *sheet, uint32_t x, uint32_t y, const char *text)
 {
-	for (; *text; text++, x += LETTER_SCALE * (LETTER_WIDTH + 1)) {
-		int code = *text < LETTER_FIRST || *text > LETTER_LAST ? '?' : *text;
-		for (uint32_t i = 0; i < LETTER_WIDTH * LETTER_SCALE; i++)
-			for (uint32_t j = 0; j < LETTER_HEIGHT * LETTER_SCALE; j++)
-				if (letters[code - LETTER_FIRST][i / LETTER_SCALE] >> j / LETTER_SCALE & 1)
-					put_pixel(sheet, x + i, y + j, 235);
-	}
+	const struct letters_picture picture = {sheet->data, (size_t)sheet->width * 4, sheet->width, sheet->height};
+	letters_line(&picture, x, y, LETTER_SCALE, INK, text);
 }
 
 static void put_cell(const struct sheet *sheet, const struct contact *contact, uint32_t row, uint32_t column,
