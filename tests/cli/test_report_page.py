@@ -204,6 +204,27 @@ class ReportPage(unittest.TestCase):
         self.assertIn("rings", self.choose("scene", "rings, N = 2, 96x54")["scene"])
         self.assertNotEqual(self.pixels(), before)
 
+    def test_a_recording(self):
+        """Predictions of a recording, whose name is not to be trusted; there is no pursuit camera."""
+        path, out = os.path.join(self.folder, 'a"<b>&.pursuit'), self.folder + "/recording"
+        made = common.run("record", path, "--scene", "fan", "--size", "96x54", "--fps", "60", "--seconds", "0.2")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        made = common.run("report", "--scenes", "none", "--recordings", path, "--methods", "hold,grid", "--vary", "none",
+                          "--out", out)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.browser.open(out + "/report.html")
+        self.assertIn('a"<b>&, N = 2, 96x54', self.shown()["scene"])
+        self.assertTrue(self.browser.evaluate("document.querySelector('#viewer-show [value=seen]').disabled"))
+        self.choose("left", "grid")
+        self.choose("right", "grid")
+        before = self.pixels()
+        self.keys("next", "Enter")
+        self.assertFalse(self.pixels() == before)
+        status = self.browser.evaluate("document.getElementById('viewer-status').textContent")
+        self.assertIn("prediction", status)
+        self.browser.requests.clear()
+        self.assertEqual(self.browser.problems, [])
+
     def test_narrow_and_dark(self):
         def background():
             return self.browser.evaluate("getComputedStyle(document.body).backgroundColor")
