@@ -24,7 +24,7 @@ enum pass_id {
 	PASS_ANALYSE = 0,
 	PASS_FIELD,      /* displacement, depth and colour at each pixel into engine->pixels; the same for all executors */
 	PASS_UPLOAD,     /* ORIGINAL and UI from the frame's planes */
-	PASS_PYRAMID,    /* LOW from ORIGINAL, in the marked tiles or everywhere */
+	PASS_PYRAMID,    /* LOW from ORIGINAL, or what it is made of, in the marked tiles or everywhere */
 	PASS_COMPENSATE, /* REAL and BETWEEN from ORIGINAL and LOW */
 	PASS_PAINT,      /* engine->pixels.shown by job.paint; the same for all executors */
 	PASS_PUT,        /* SHOWN from engine->pixels.shown */
