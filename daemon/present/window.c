@@ -7,7 +7,6 @@
 #include <math.h>
 #include <poll.h>
 #include <pthread.h>
-#include <setjmp.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,6 +17,8 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <X11/Xlib.h>
+
+#include "daemon/present/x_errors.h"
 
 /* As glfw3native.h has them, which wants headers of more X11 libraries than are of use here. */
 GLFWAPI Display *glfwGetX11Display(void);
@@ -250,47 +251,23 @@ static void on_iconified(GLFWwindow *glfw, int iconified)
 
 /* ---- a server that goes away ---- */
 
-/*
- * Where main goes when the connection breaks inside a call of GLFW, which does not expect that: what it asks for then
- * has no answer, and it goes on with what was in memory before.
- */
-static _Thread_local jmp_buf *way_out;
-
+/* On any thread. */
 static void say_lost(struct window *window)
 {
 	if (!atomic_exchange(&window->lost, true))
 		window->params.lost(window->params.data, "glfw: the connection to the X server broke");
 }
 
-/*
- * Instead of the one that ends the process. Xlib has locked the display for this thread for ever, so that others would
- * wait for ever; without the lock they find the connection broken by themselves, and their calls do nothing.
- */
-static int on_io_error(Display *display)
-{
-	XUnlockDisplay(display);
-	if (way_out)
-		longjmp(*way_out, 1);
-	return 0;
-}
-
-/* Follows it where nobody left, and does not end the process either. */
-static void on_display_error(Display *display, void *data)
+static void on_broken(Display *display, void *data)
 {
 	(void)display;
 	say_lost(data);
 }
 
 /* On main. False if the connection broke within. */
-static bool call_safely(void (*function)(struct window *window), struct window *window)
+static bool call_safely(void (*function)(void *window), struct window *window)
 {
-	jmp_buf here;
-	const bool fine = setjmp(here) == 0;
-	if (fine) {
-		way_out = &here;
-		function(window);
-	}
-	way_out = NULL;
+	const bool fine = x_errors_call(function, window);
 	if (!fine)
 		say_lost(window);
 	return fine;
@@ -391,14 +368,12 @@ static bool connection_is_broken(void)
 
 bool window_is_possible(void)
 {
-	Display *display = XOpenDisplay(NULL);
-	if (display)
-		XCloseDisplay(display);
-	return display != NULL;
+	return x_errors_can_connect();
 }
 
-static void begin(struct window *window)
+static void begin(void *data)
 {
+	struct window *window = data;
 	window->begun = glfwInit() && !connection_is_broken();
 	if (!window->begun) {
 		error_set(&window->error, -ENODEV, "glfw: no window system: %s; is DISPLAY set?", glfw_sentence());
@@ -406,7 +381,7 @@ static void begin(struct window *window)
 	}
 	window->display = glfwGetX11Display();
 	if (window->display)
-		XSetIOErrorExitHandler(window->display, on_display_error, window);
+		x_errors_watch(window->display, on_broken, window);
 	window->open = open_window(window, &window->error) == 0;
 	if (window->open)
 		look(window, true);
@@ -425,7 +400,7 @@ struct window *window_create(const struct window_params *params, struct error *e
 	window->size_is_free = params->options->width == 0;
 	snprintf(window->monitor, sizeof(window->monitor), "%s", params->options->monitor ? params->options->monitor : "");
 	error_set(&window->error, -ENODEV, "glfw: the connection to the X server broke");
-	XSetIOErrorHandler(on_io_error);
+	x_errors_survive();
 	call_safely(begin, window);
 	if (window->open && !atomic_load(&window->lost))
 		return window;
@@ -442,8 +417,10 @@ static void leave_at_once(int status, void *data)
 	_exit(status);
 }
 
-static void end(struct window *window)
+static void end(void *data)
 {
+	struct window *window = data;
+	x_errors_survive();
 	if (window->shared)
 		glfwDestroyWindow(window->shared);
 	if (window->glfw)
@@ -486,8 +463,10 @@ static void fit(struct window *window, uint32_t width, uint32_t height)
 		glfwSetWindowSize(window->glfw, (int)width, (int)height);
 }
 
-static void process_events(struct window *window)
+static void process_events(void *data)
 {
+	struct window *window = data;
+	x_errors_survive();
 	glfwPollEvents();
 	if (window->wished_width)
 		fit(window, window->wished_width, window->wished_height);
