@@ -10,6 +10,7 @@
 
 #include "daemon/record/image.h"
 #include "report_cost.h"
+#include "report_curves.h"
 #include "report_html.h"
 #include "report_overall.h"
 #include "report_viewer.h"
@@ -220,6 +221,9 @@ static void put_tables(const struct report *report, FILE *out)
 		fputs("<h2>", out);
 		html_text(out, json_string_value(json_object_get(table, "title")));
 		fputs("</h2>\n", out);
+		curves_write(json_object_get(table, "plot"), json_string_value(json_object_get(table, "title")), out);
+		if (json_array_size(json_object_get(table, "columns")) == 0)
+			continue;
 		html_table_begin(out, json_string_value(json_object_get(table, "title")));
 		fputs("<tr>", out);
 		json_array_foreach(json_object_get(table, "columns"), i, cell)

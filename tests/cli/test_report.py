@@ -209,6 +209,21 @@ class Report(common.Case):
         self.assertIn("Stability: motion, cpu", page.text)
         self.assertIn("Stability & bounds", page.text)
         self.assertIn("a < b", page.text)
+        self.assertNotIn("curve & one", page.text)
+        with open(self.path("table.json"), "w") as file:
+            json.dump([{"title": "Plot < one", "columns": [], "rows": [], "plot": {
+                "x": "s", "y": "error & more", "steps": True,
+                "curves": [{"name": "curve & one", "points": [[0, 1], [1, 3], [2, 2]]}, {"name": "none", "points": [[0]]}]}},
+                {"title": "Nothing", "columns": [], "rows": [], "plot": {"curves": [7]}}], file)
+        self.report(*SMALL, "--tables", self.path("table.json"))
+        page = self.load()[2]
+        self.assertIn("curve & one", page.text)
+        self.assertIn("error & more", page.text)
+        with open(self.path("out/report.html")) as file:
+            html = file.read()
+        self.assertEqual(html.count('<svg viewBox="0 0 900 380"'), 1)
+        self.assertIn('aria-label="Plot &lt; one"', html)
+        self.assertIn('H375.0L', html)
         with open(self.path("table.json"), "w") as file:
             json.dump({"title": "x"}, file)
         self.assertIn("a table needs", self.report(*SMALL, "--tables", self.path("table.json"), status=1).stderr)

@@ -69,6 +69,7 @@ struct sent {
 /* One picture on display, first shown at a vblank. */
 struct shown {
 	double vblank_ns, moment_ns, interval_ns;
+	bool real;
 };
 
 struct run {
@@ -210,7 +211,7 @@ static void note_shown(struct run *run, const struct pacer_decision *decision)
 	run->delays[run->shown_count] = (double)run->pacer.delay_ns;
 	run->shown[run->shown_count++] =
 		(struct shown){run->vblank_ns, run->taken.moment_ns + decision->phase * (double)decision->interval_ns,
-					   (double)decision->interval_ns};
+					   (double)decision->interval_ns, decision->show == PACER_REAL};
 }
 
 static bool streams(const struct run *run)
@@ -308,10 +309,15 @@ struct march {
 	double at_ns, delay_ns, drift;
 };
 
-static double off_of(const struct shown *shown, const struct march *march)
+static double error_of(const struct shown *shown, const struct march *march)
 {
 	const double delay_ns = march->delay_ns + march->drift * (shown->vblank_ns - march->at_ns);
-	return fabs(shown->vblank_ns - shown->moment_ns - delay_ns) / shown->interval_ns;
+	return (shown->vblank_ns - shown->moment_ns - delay_ns) / shown->interval_ns;
+}
+
+static double off_of(const struct shown *shown, const struct march *march)
+{
+	return fabs(error_of(shown, march));
 }
 
 /* Of the first picture in the last quarter of the run. */
@@ -362,6 +368,10 @@ static double find_settling(const struct run *run, double from_ns, double *scrat
 	if (last_quarter(run) == run->shown_count)
 		return 0.0; /* it passes through */
 	const struct march march = find_march(run, shown_since(run, from_ns + 1e9), last, scratch);
+	const struct simulation *s = run->simulation;
+	for (uint64_t i = 0; s->note && i < run->shown_count; i++)
+		s->note(s->data, (run->shown[i].vblank_ns - from_ns) / 1e9, error_of(&run->shown[i], &march),
+				run->shown[i].real);
 	uint64_t off_later = 0;
 	double settled_ns = INFINITY;
 	for (uint64_t i = last; i-- > first;) {

@@ -48,6 +48,12 @@ struct simulation {
 	uint64_t vblanks; /* true ones, 10,000 */
 	double cost_ms;   /* of a real frame's picture; 0: 2 */
 	uint64_t seed;
+	/*
+	 * Optional: each picture that was shown, at the end, in order. time_s: since the start or, where there is one, the
+	 * step; error: how far its moment is from the march that settle_s is judged by, in real intervals.
+	 */
+	void (*note)(void *data, double time_s, double error, bool real);
+	void *data;
 };
 
 struct simulation_result {
