@@ -18,6 +18,28 @@
 
 static char folder[] = "/tmp/pursuit-listener-XXXXXX";
 
+/* The linker sends the listener here (--wrap). */
+static struct {
+	bool bind, listen;
+} fails;
+
+int __real_bind(int fd, const struct sockaddr *address, socklen_t size);
+int __real_listen(int fd, int backlog);
+int __wrap_bind(int fd, const struct sockaddr *address, socklen_t size);
+int __wrap_listen(int fd, int backlog);
+
+int __wrap_bind(int fd, const struct sockaddr *address, socklen_t size)
+{
+	errno = EROFS;
+	return fails.bind ? -1 : __real_bind(fd, address, size);
+}
+
+int __wrap_listen(int fd, int backlog)
+{
+	errno = ENOBUFS;
+	return fails.listen ? -1 : __real_listen(fd, backlog);
+}
+
 static const char *path_of(const char *name)
 {
 	static char path[128];
@@ -88,6 +110,20 @@ static void test_what_is_there(void)
 	check_path(path_of("link"), -ELOOP, "cannot open");
 }
 
+/* And nothing of it is left there. */
+static void test_system_refuses(void)
+{
+	fails.bind = true;
+	check_path(path_of("refused"), -EROFS, "cannot listen at");
+	fails.bind = false;
+	fails.listen = true;
+	check_path(path_of("refused"), -ENOBUFS, "cannot listen at");
+	fails.listen = false;
+	CHECK(access(path_of("refused"), F_OK) != 0);
+	CHECK(access(path_of("refused.lock"), F_OK) != 0);
+	check_path(path_of("refused"), 0, "");
+}
+
 /* In a process of its own, whose descriptor 3 it is. */
 static void check_activation(int given, int want, const char *sentence)
 {
@@ -150,7 +186,8 @@ static void test_path_of_a_client(void)
 	char name[256];
 	memset(name, 'x', sizeof(name) - 1);
 	name[sizeof(name) - 1] = 0;
-	const struct pursuit_stream_params params = {.width = 16, .height = 16, .socket_path = name};
+	setenv("PURSUIT_SOCKET", name, 1);
+	const struct pursuit_stream_params params = {.width = 16, .height = 16};
 	struct pursuit_stream *stream = pursuit_open(&params);
 	struct pursuit_status status = {.state = PURSUIT_STATE_ATTACHED};
 	for (int i = 0; i < 3 && stream; i++) {
@@ -171,6 +208,7 @@ int main(void)
 		return 1;
 	RUN(test_paths);
 	RUN(test_what_is_there);
+	RUN(test_system_refuses);
 	RUN(test_activation);
 	RUN(test_other_control_data);
 	RUN(test_path_of_a_client);
