@@ -36,9 +36,21 @@ static void add_place(struct reload *reload, const char *path)
 		log_warning(reload->log, "%s: changes are not noticed (%s); SIGHUP has it read again", path, strerror(errno));
 }
 
+static bool is_watched(const struct reload *reload, int watch)
+{
+	for (unsigned i = 0; i < reload->place_count; i++)
+		if (reload->places[i].watch == watch)
+			return true;
+	return false;
+}
+
 /* Links may lead elsewhere by now, folders may have come: at each reading anew. The kernel knows watches it has. */
 static void watch_files(struct reload *reload)
 {
+	int before[RELOAD_PLACES];
+	const unsigned count = reload->place_count;
+	for (unsigned i = 0; i < count; i++)
+		before[i] = reload->places[i].watch;
 	reload->place_count = 0;
 	for (unsigned i = 0; i < reload->file_count; i++) {
 		char *real = realpath(reload->files[i], NULL);
@@ -47,6 +59,9 @@ static void watch_files(struct reload *reload)
 			add_place(reload, real);
 		free(real);
 	}
+	for (unsigned i = 0; i < count; i++)
+		if (before[i] >= 0 && !is_watched(reload, before[i]))
+			inotify_rm_watch(reload->watch_fd, before[i]);
 }
 
 /* A file that was just made is still being written; a link is whole at once. */

@@ -155,6 +155,37 @@ static void test_link(void)
 	CHECK(setting_comes("\ncell = 63\n"));
 }
 
+static unsigned watches(void)
+{
+	char command[128], line[256];
+	unsigned count = 0;
+	snprintf(command, sizeof(command), "cat /proc/%d/fdinfo/*", (int)fixture.pid);
+	FILE *out = popen(command, "r");
+	while (out && fgets(line, sizeof(line), out))
+		count += strncmp(line, "inotify wd:", 11) == 0;
+	if (out)
+		pclose(out);
+	return count;
+}
+
+/* The folders that a link led to before are not watched any more. */
+static void test_many_links(void)
+{
+	char folder[160], text[32], path[200];
+	for (int i = 0; i < 6; i++) {
+		snprintf(folder, sizeof(folder), "%s/folder%d", fixture.folder, i);
+		snprintf(path, sizeof(path), "%s/target", folder);
+		snprintf(text, sizeof(text), "cell = %d\n", 20 + i);
+		CHECK(mkdir(folder, 0700) == 0);
+		write_file(path, text);
+		CHECK(symlink(path, other) == 0 && rename(other, config) == 0);
+		snprintf(text, sizeof(text), "\ncell = %d\n", 20 + i);
+		CHECK(setting_comes(text));
+	}
+	CHECK_INT(watches(), 2);
+	CHECK(unlink(config) == 0);
+}
+
 /* What was asked for stays through a reading, and the log says so. */
 static void test_asked_stays(void)
 {
@@ -228,6 +259,7 @@ int main(int argc, char **argv)
 	RUN(test_deleted);
 	RUN(test_burst);
 	RUN(test_link);
+	RUN(test_many_links);
 	RUN(test_asked_stays);
 	RUN(test_signal);
 	CHECK_INT(figure("lost_real_frames"), 0);
