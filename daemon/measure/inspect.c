@@ -113,8 +113,17 @@ static uint32_t step_of(const struct inspect_view *view)
 	return step;
 }
 
+static void count_wins(struct inspect *inspect, const double before[INSPECT_HYPOTHESES])
+{
+	const double right = inspect->cost[INSPECT_RIGHT] - before[INSPECT_RIGHT];
+	for (enum inspect_hypothesis h = INSPECT_RIGHT + 1; h < INSPECT_OTHER_KIND; h++)
+		inspect->wins[h] += inspect->cost[h] - before[h] < right;
+}
+
 static void add_costs(struct inspect *inspect, const struct pair *pair)
 {
+	double before[INSPECT_HYPOTHESES];
+	memcpy(before, inspect->cost, sizeof(before));
 	for (uint32_t y = 1; y + 1 < pair->a->height; y += pair->step) {
 		for (uint32_t x = 1; x + 1 < pair->a->width; x += pair->step) {
 			if (!usable(pair, x, y))
@@ -126,6 +135,7 @@ static void add_costs(struct inspect *inspect, const struct pair *pair)
 				inspect->cost[h] += (double)cost_of(pair, h, x, y);
 		}
 	}
+	count_wins(inspect, before);
 }
 
 /* What the motion of the other kind would explain: the neighbour on the other side. */

@@ -79,8 +79,9 @@ struct inspect_residual {
 struct inspect {
 	uint32_t frames, pairs;
 	uint64_t samples;
-	double cost[INSPECT_HYPOTHESES]; /* sum over the samples */
-	uint64_t other_samples;          /* of INSPECT_OTHER_KIND, and those of INSPECT_RIGHT in the same pairs */
+	double cost[INSPECT_HYPOTHESES];   /* sum over the samples */
+	uint32_t wins[INSPECT_HYPOTHESES]; /* pairs that it explains better than what was declared */
+	uint64_t other_samples;            /* of INSPECT_OTHER_KIND, and those of INSPECT_RIGHT in the same pairs */
 	uint64_t other_right_samples;
 	double other_right_cost;
 	double speed_sum; /* of |m|, over the samples */

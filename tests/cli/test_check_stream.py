@@ -56,6 +56,21 @@ class CheckStream(common.Case):
             with self.subTest(scene=scene, motion=motion):
                 self.assertEqual(self.codes(path, 0), [])
 
+    def test_good_coarse_streams(self):
+        """Fine things in few pixels, and long steps: what motion leaves over is no mistake."""
+        for scene, fps in ("rings", 30), ("rings", 15), ("fan", 15), ("trees", 30):
+            path = self.record("good.pursuit", scene=scene, size="160x90", fps=fps, seconds=0.6)
+            with self.subTest(scene=scene, fps=fps):
+                self.assertEqual(self.codes(path, 0), [])
+
+    def test_mistakes_that_hide(self):
+        """Much that no motion explains, motion along one axis, slow motion: small differences in every pair count."""
+        for scene, kind in ("trees", "y-sign"), ("fan", "half"), ("tower", "half"), ("tower", "ndc"):
+            path = self.record("good.pursuit", scene=scene, size="480x270", fps=30, seconds=0.6)
+            with self.subTest(scene=scene, kind=kind):
+                self.assertEqual(self.codes(path, 0), [])
+                self.assertEqual(self.codes(self.plant(kind, path), 1), [FOUND[kind]])
+
     def test_still(self):
         path = self.record("still.pursuit", scene="still", size="96x54", fps=60, seconds=0.2)
         self.assertNotIn("mistake", self.must("check-stream", path).stdout.replace("no mistake", ""))
