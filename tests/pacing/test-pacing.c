@@ -186,6 +186,28 @@ static void test_half_the_rate_uncounted(void)
 	}
 }
 
+/* The client stops for half a minute, again and again: what was learned before holds after. */
+static void test_long_stalls(void)
+{
+	static const char *const clients[] = {"23.976", "30", "45", "59.94", "60"};
+	static const char *const displays[] = {"120", "143.9"};
+	for (size_t d = 0; d < 2; d++) {
+		for (size_t c = 0; c < 5; c++) {
+			struct simulation s = {
+				.display = *display_of(displays[d]), .client = *client_of(clients[c]), .vblanks = 4 * VBLANKS};
+			struct simulation_result r;
+			s.client.stall_ms = 30000;
+			simulation_run(&s, &r);
+			CHECK_NEAR(r.phase_most, 0, PHASE_MOST);
+			CHECK_NEAR(r.delay_span_ms, 0, 1e-3);
+			CHECK(r.repeats > r.vblanks / 2 && r.in_betweens > 400); /* it did stop, and it did play */
+			CHECK_INT(r.late, 0);
+			CHECK(r.dropped <= 1 &&
+				  r.doubled <= 12); /* the last before each stall stays for eight vblanks, then as a repeat */
+		}
+	}
+}
+
 /* The same seed, the same figures; another seed, others. */
 static void test_chance_is_repeatable(void)
 {
@@ -209,6 +231,7 @@ int main(void)
 	RUN(test_unsteady_displays);
 	RUN(test_all_settle_in_half_a_second);
 	RUN(test_half_the_rate_uncounted);
+	RUN(test_long_stalls);
 	RUN(test_chance_is_repeatable);
 	return test_result();
 }
