@@ -11,6 +11,9 @@
 #include "daemon/engine/warp_triangle.h"
 #include "shaders/limits.h"
 
+/* Triangles of a plan below which waking threads takes longer than what they would do. */
+#define LEAST_SHARED 32768u
+
 static bool reserve(struct warp_mesh *mesh, uint32_t count)
 {
 	if (count <= mesh->capacity)
@@ -45,18 +48,18 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float toler
 					struct error *error)
 {
 	mesh->plan = plan;
-	mesh->pool = pool;
+	mesh->pool = plan->index_count / 3 >= LEAST_SHARED ? pool : NULL;
 	if (!reserve(mesh, plan->index_count))
 		return error_set(error, -ENOMEM, "out of memory for %u triangles", plan->index_count / 3);
 	mesh->count = plan->index_count;
 	mesh->tolerance = tolerance > 0.0f ? tolerance : 0.0f;
 	if (tolerance >= 0.0f)
-		mesh->count = merge_triangles(&mesh->merge, plan, tolerance, pool, mesh->triangles);
+		mesh->count = merge_triangles(&mesh->merge, plan, tolerance, mesh->pool, mesh->triangles);
 	else
 		memcpy(mesh->triangles, plan->indices, plan->index_count * sizeof(*plan->indices));
 	if (!mesh->count)
 		return error_set(error, -ENOMEM, "out of memory for %u cells", plan->index_count / 6);
-	pool_run(pool, measure, mesh, warp_items(mesh));
+	pool_run(mesh->pool, measure, mesh, warp_items(mesh));
 	mesh->begun++;
 	return 0;
 }

@@ -35,7 +35,7 @@ struct pool;
 
 struct warp_mesh {
 	const struct plan *plan;
-	struct pool *pool; /* shares the work: no bit depends on it; NULL: alone */
+	struct pool *pool; /* shares the work where there is enough: no bit depends on it; NULL: alone */
 	struct merge merge;
 	struct tiles folds;  /* at the phase sorted for, where triangles may lie over each other */
 	struct tiles low;    /* of the source, where L is needed up to the last phase */
