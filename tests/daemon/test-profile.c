@@ -223,7 +223,9 @@ static void test_two_clients(void)
 	client_end(&second);
 	CHECK(setting_comes("method = hold\n") && profile_is("first-game"));
 	client_play(&first, 3);
-	CHECK_INT(figure("passes", "analyse"), 7);
+	/* one more where its last frame was shown again, when it was focused, before the first new one came */
+	const json_int_t analysed = figure("passes", "analyse");
+	CHECK(analysed == 7 || analysed == 8);
 	client_end(&first);
 	CHECK(setting_comes("\nblur = everywhere\n") && profile_is(""));
 	CHECK_INT(figure(NULL, "lost_real_frames"), 0);
