@@ -154,7 +154,10 @@ static void test_shows_the_picture(void)
 		submit_one();
 	}
 	corner = 0;
-	CHECK(count_dated("estimated") > 0);
+	bool estimated = false; /* on a busy machine first by the clock alone */
+	for (int i = 0; i < 20 && !estimated; i++)
+		estimated = play_until_shown(10) && count_dated("estimated") > 0;
+	CHECK(estimated);
 	CHECK_INT(count_dated("display server"), 0);
 	CHECK_INT(count_dated("kernel"), 0);
 	stop(SIGTERM);
@@ -250,14 +253,24 @@ static bool logged_at_last(const char *text)
 	return false;
 }
 
+/* The picture is in the daemon's window, whichever that is by now. */
+static bool play_until_new_window_shows(void)
+{
+	for (int i = 0; i < 4; i++) {
+		window = xvfb_find(&xvfb, "Pursuit");
+		if (play_until_pixel(20, 20, color_at(20, 20), true))
+			return true;
+	}
+	return false;
+}
+
 /* And comes back: so does the window, and whose pictures went nowhere sees them again. */
 static void test_server_that_comes_back(void)
 {
 	for (int i = 0; i < 3; i++) {
 		CHECK(xvfb_start(&xvfb));
 		CHECK(logged_at_last("glfw works again and takes over from headless"));
-		window = xvfb_find(&xvfb, "Pursuit");
-		CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
+		CHECK(play_until_new_window_shows());
 		CHECK(play_until_shown(20));
 		xvfb_stop(&xvfb);
 		sleep_ms(500);
@@ -276,8 +289,7 @@ static void test_server_that_is_waited_for(void)
 	CHECK(logged_at_last("no presenter works"));
 	CHECK(xvfb_start(&xvfb));
 	CHECK(logged_at_last("glfw presents now"));
-	window = xvfb_find(&xvfb, "Pursuit");
-	CHECK(play_until_pixel(20, 20, color_at(20, 20), true));
+	CHECK(play_until_new_window_shows());
 	stop(SIGTERM);
 }
 
