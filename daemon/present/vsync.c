@@ -166,9 +166,20 @@ static uint64_t silent_at(const struct vsync *vsync)
 	return vsync->last_ns + (uint64_t)(SILENT_VBLANKS * vsync->period_ns);
 }
 
+/* Before Linux 5.7 edges bear the time of day. */
+static bool is_ahead(const struct vsync *vsync, uint64_t now_ns)
+{
+	return vsync->last_ns > now_ns && vsync->last_ns - now_ns > QUIET_NS;
+}
+
 static void check_silence(struct vsync *vsync, uint64_t now_ns)
 {
 	const bool was_there = vsync->last_ns != 0;
+	if (is_ahead(vsync, now_ns)) {
+		snprintf(vsync->reason, sizeof(vsync->reason), "its edges bear times of another clock");
+		refuse(vsync);
+		return;
+	}
 	if (vsync->quiet_ns == 0)
 		vsync->quiet_ns = now_ns + QUIET_NS;
 	if (now_ns < (was_there ? silent_at(vsync) : vsync->quiet_ns))
@@ -235,7 +246,7 @@ void vsync_expect(struct vsync *vsync, double period_ns)
 /* With the lock. */
 static bool find_grid(const struct vsync *vsync, uint64_t now_ns, struct grid *grid)
 {
-	if (vsync->counts.state != VSYNC_TRUSTED || now_ns > silent_at(vsync))
+	if (vsync->counts.state != VSYNC_TRUSTED || now_ns > silent_at(vsync) || is_ahead(vsync, now_ns))
 		return false;
 	*grid = vblanks_get_grid(&vsync->line);
 	grid->epoch_ns = (uint64_t)((int64_t)grid->epoch_ns + (int64_t)vsync->offset_ns);

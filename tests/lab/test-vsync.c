@@ -300,6 +300,30 @@ static void test_dating(void)
 	check_dating(8341675.0, 0, 400);
 }
 
+/* Stamps of the time of day, as kernels before 5.7 have them, tell nothing about vblanks; one alone is got over. */
+static void test_another_clock(void)
+{
+	const struct wire wire = {.period = PERIOD};
+	struct vsync *vsync = begin();
+	struct grid grid;
+	now = 1.7e18;
+	play(vsync, &wire, 100);
+	CHECK(vsync_get_grid(vsync, (uint64_t)START, &grid) == 0);
+	CHECK(vsync_check(vsync, (uint64_t)START, sentence));
+	CHECK(strstr(sentence, "its edges bear times of another clock"));
+	play(vsync, &wire, 10);
+	CHECK(!vsync_check(vsync, (uint64_t)START, sentence));
+	now = START;
+	play(vsync, &wire, 200);
+	CHECK_INT(state_of(vsync), VSYNC_TRUSTED);
+	vsync_add_edge(vsync, (uint64_t)(now + 1e6 * PERIOD));
+	CHECK(vsync_get_grid(vsync, (uint64_t)now, &grid) == 0);
+	vsync_check(vsync, (uint64_t)now, sentence);
+	play(vsync, &wire, 100);
+	CHECK_INT(state_of(vsync), VSYNC_TRUSTED);
+	vsync_destroy(&vsync);
+}
+
 static void test_other_rate(void)
 {
 	struct vsync *vsync = begin();
@@ -325,6 +349,7 @@ int main(void)
 	RUN(test_silence_from_the_start);
 	RUN(test_nonsense);
 	RUN(test_dating);
+	RUN(test_another_clock);
 	RUN(test_other_rate);
 	return test_result();
 }
