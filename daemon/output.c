@@ -50,6 +50,7 @@ struct output {
 
 	/* the render thread's own */
 	struct settings settings; /* a copy: some change while it runs */
+	struct settings due;      /* what it becomes next */
 	struct stats stats;
 	struct render render;
 	struct stream *own[OUTPUT_STREAMS]; /* referenced copy of streams */
@@ -208,21 +209,28 @@ static void change_presenter(struct output *output, struct presenter *presenter)
 		display_let_go(output->display);
 }
 
-/* What main wants to be different. */
-static void read_wishes(struct output *output)
+/* What main wants to be different; the settings are in output->due. */
+struct wishes {
+	bool new_view, new_settings;
+	uint32_t view;
+};
+
+/* With the lock, the one that streams are taken with: theirs and their settings go together. */
+static struct wishes take_wishes_over(struct output *output)
 {
-	struct settings wished;
-	pthread_mutex_lock(&output->lock);
-	const bool new_view = output->view_changed, new_settings = output->settings_changed;
-	const uint32_t view = output->view;
-	if (new_settings)
-		wished = output->wished;
+	const struct wishes wishes = {output->view_changed, output->settings_changed, output->view};
+	if (wishes.new_settings)
+		output->due = output->wished;
 	output->view_changed = output->settings_changed = false;
-	pthread_mutex_unlock(&output->lock);
-	if (new_view)
-		render_set_view(&output->render, view);
-	if (new_settings)
-		render_set_settings(&output->render, &wished);
+	return wishes;
+}
+
+static void grant(struct output *output, const struct wishes *wishes)
+{
+	if (wishes->new_view)
+		render_set_view(&output->render, wishes->view);
+	if (wishes->new_settings)
+		render_set_settings(&output->render, &output->due);
 }
 
 /* Empties the mailbox. False: stop. */
@@ -242,10 +250,11 @@ static bool read_mailbox(struct output *output)
 	output->flip_count = 0;
 	output->streams_changed = output->presenter_changed = false;
 	output->woken = false;
+	const struct wishes wishes = take_wishes_over(output);
 	pthread_mutex_unlock(&output->lock);
 
 	handle_flips(output, flips, flip_count);
-	read_wishes(output);
+	grant(output, &wishes);
 	if (new_presenter)
 		change_presenter(output, presenter);
 	if (changed)
