@@ -108,11 +108,11 @@ int profile_file_set(struct profile_file *file, const char *application, const c
 		section = begin_section(file, application);
 	if (section == NONE)
 		return -ENOMEM;
-	size_t at = find(file, section + 1, CONFIGURATION_SETTING, name);
-	if (at == NONE)
-		return insert_text(file, section_end(file, section), "%s = %s", name, value);
-	erase(file, at);
-	return insert_text(file, at, "%s = %s", name, value);
+	const size_t first = find(file, section + 1, CONFIGURATION_SETTING, name);
+	/* Of several the last one holds. */
+	for (size_t at = first; at != NONE; at = find(file, section + 1, CONFIGURATION_SETTING, name))
+		erase(file, at);
+	return insert_text(file, first == NONE ? section_end(file, section) : first, "%s = %s", name, value);
 }
 
 bool profile_file_unset(struct profile_file *file, const char *application, const char *name)
@@ -208,8 +208,11 @@ static int lock_folder(struct profile_file *file, struct error *error)
 
 int profile_file_open(struct profile_file *file, const char *path, bool change, struct error *error)
 {
+	struct stat status;
 	*file = (struct profile_file){.folder_fd = -1};
 	char *real = realpath(path, NULL);
+	if (!real && errno == ENOENT && lstat(path, &status) == 0)
+		return error_set(error, -ENOENT, "%.400s is a link that leads nowhere", path);
 	const int length = snprintf(file->path, sizeof(file->path), "%s", real ? real : path);
 	free(real);
 	if (length >= (int)sizeof(file->path))

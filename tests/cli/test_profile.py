@@ -65,6 +65,12 @@ class Profile(common.Case):
         self.assertEqual(self.read(), "# my settings\ncell = 16\n\n# the race\n# why this is so\n\n# about the next one\n"
                                       "[application other game]\nmethod = hold\n")
 
+    def test_the_last_of_several_holds(self):
+        self.write("[application race]\ncell = 10\n# why\ncell = 12\nblur = off\n[application other]\ncell = 14\n")
+        self.profile("set", "race", "cell=20")
+        self.assertEqual(self.read(),
+                         "[application race]\ncell = 20\n# why\nblur = off\n[application other]\ncell = 14\n")
+
     def test_what_is_read(self):
         self.write(WRITTEN)
         self.assertEqual(self.profile("show", "race").stdout, "blur = off\ncell = 32\n")
@@ -120,6 +126,12 @@ class Profile(common.Case):
         self.assertTrue(os.path.islink(self.file))
         self.assertEqual(os.stat(self.file).st_mode & 0o777, 0o640)
         self.assertEqual(os.listdir(os.path.dirname(self.file)), ["pursuitd.conf"])
+
+    def test_a_link_to_nothing_stays(self):
+        os.makedirs(os.path.dirname(self.file))
+        os.symlink("nothing", self.file)
+        self.assertIn("is a link that leads nowhere", self.profile("set", "race", "cell=8", status=1).stderr)
+        self.assertEqual(os.readlink(self.file), "nothing")
 
     def test_many_at_once(self):
         self.write("# first\n")
