@@ -82,7 +82,8 @@ static uint64_t count_bytes(const struct executor_cpu *executor)
 	for (int i = 0; i < MAX_LEVELS; i++)
 		bytes += executor->levels[i].capacity;
 	return bytes + layers_bytes(&executor->layers) + scene_bytes(&executor->scene) + executor->weights.capacity +
-		   executor->intake.bounds_capacity * sizeof(*executor->intake.bounds);
+		   executor->intake.bounds_capacity * sizeof(*executor->intake.bounds) +
+		   executor->intake.hashes_capacity * sizeof(*executor->intake.hashes);
 }
 
 static void collect_times(struct executor *executor)

@@ -3,7 +3,8 @@
 
 /*
  * A number of a row's bytes, to find rows that are as they were without keeping them. Each step maps words to numbers
- * one to one, so rows that differ in one word of 8 bytes never agree; others do by chance, one in 2^64.
+ * one to one, so rows that differ in one word of 8 bytes never agree. Others do by chance, or if they are made to: a
+ * difference in the topmost bit of a word goes through a step unchanged. Who does that deceives his own picture only.
  */
 #ifndef PURSUIT_ENGINE_CPU_ROW_HASH_H
 #define PURSUIT_ENGINE_CPU_ROW_HASH_H
