@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Whatever came before a frame, it is shown as an engine shows it that takes all of each frame anew: sequences of
+ * frames that change a little, or not, or in size and kind, with settings that change among them, and images that keep
+ * what they hold.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "daemon/engine/engine.h"
+#include "tests/engine/picture.h"
+#include "tests/test.h"
+
+#define FRAMES 300u
+#define SEEDS 10u
+#define IMAGES 2u
+
+static const char *kind = "cpu";
+
+struct sequence {
+	uint32_t random;
+	struct engine *engine, *anew; /* the second knows nothing of what was before */
+	uint32_t width, height, format;
+	unsigned planes;
+	struct picture picture;
+	struct engine_image images[IMAGES];
+	uint8_t *expected;
+	uint64_t frame_id;
+	const char *method;
+	uint32_t found; /* frames that were found to be as the one before, though nobody said so */
+};
+
+static uint32_t pick(struct sequence *sequence, uint32_t count)
+{
+	return picture_random(&sequence->random) % count;
+}
+
+static struct engine_params some_params(struct sequence *sequence)
+{
+	static const char *const methods[] = {"pursuit", "pursuit", "grid", "hold", "blur-hold", "black", "scatter"};
+	sequence->method = methods[pick(sequence, 7)];
+	struct engine_params params = {.context = ENGINE_CONTEXT_CPU,
+								   .method = sequence->method,
+								   .threads = 3,
+								   .blur = (enum engine_blur)pick(sequence, 3),
+								   .motion_model = (enum engine_motion_model)pick(sequence, 2),
+								   .leave_nothing_out = pick(sequence, 5) == 0,
+								   .no_compensation = pick(sequence, 5) == 0,
+								   .blur_level = pick(sequence, 4),
+								   .cell = 4 + pick(sequence, 12),
+								   .curve = (enum engine_curve)pick(sequence, 2)};
+	if (strcmp(kind, "cpu") != 0)
+		params.context = ENGINE_CONTEXT_EGL_SURFACELESS;
+	if (strcmp(kind, "gpu-analysis") == 0)
+		params.analysis = pick(sequence, 2) ? ENGINE_ANALYSIS_GPU : ENGINE_ANALYSIS_CPU;
+	return params;
+}
+
+static void forget_images(struct sequence *sequence)
+{
+	for (uint32_t i = 0; i < IMAGES; i++)
+		free(sequence->images[i].data);
+	free(sequence->expected);
+}
+
+/* Another size and format; or nothing but a UI where there was none, or none where there was one. */
+static void change_kind(struct sequence *sequence, bool ui_only)
+{
+	static const uint32_t sizes[][2] = {{64, 48}, {65, 33}, {131, 170}, {17, 90}};
+	if (!ui_only) {
+		const uint32_t *size = sizes[pick(sequence, 4)];
+		sequence->width = size[0];
+		sequence->height = size[1];
+		sequence->format = pick(sequence, 3) ? PURSUIT_FORMAT_BGRA8 : PURSUIT_FORMAT_RGBA16F;
+		forget_images(sequence);
+		for (uint32_t i = 0; i < IMAGES; i++)
+			sequence->images[i] =
+				(struct engine_image){.data = calloc(size[1], 4 * (size_t)size[0]), .stride = 4 * (size_t)size[0]};
+		sequence->expected = malloc(4 * (size_t)size[0] * size[1]);
+	}
+	sequence->planes ^= PICTURE_UI;
+	picture_finish(&sequence->picture);
+	picture_init(&sequence->picture, sequence->width, sequence->height, sequence->format, sequence->planes);
+	picture_fill_random(&sequence->picture, PURSUIT_ROLE_COLOR, sequence->width);
+	if (sequence->planes & PICTURE_UI)
+		picture_fill_random(&sequence->picture, PURSUIT_ROLE_UI, sequence->height);
+}
+
+static void move(struct sequence *sequence, float most)
+{
+	const struct picture *picture = &sequence->picture;
+	for (uint32_t y = 0; y < picture->height; y++)
+		for (uint32_t x = 0; x < picture->width; x++) {
+			const uint32_t part = (x / 20 + y / 20) % 3;
+			picture_set_motion(picture, x, y, part ? most * (float)part : 0.0f, part == 2 ? -most : 0.0f);
+			picture_set_depth(picture, x, y, 0.1f + 0.3f * (float)part);
+		}
+	if (pick(sequence, 3) == 0)
+		picture_set_motion(picture, pick(sequence, picture->width), pick(sequence, picture->height), NAN, INFINITY);
+	if (pick(sequence, 3) == 0)
+		picture_set_motion(picture, pick(sequence, picture->width), pick(sequence, picture->height), 3e38f, -3e38f);
+}
+
+/* One byte of a row of that plane, not the alpha of colour. */
+static void change_row(struct sequence *sequence, uint32_t role, uint32_t y)
+{
+	const struct picture *picture = &sequence->picture;
+	uint8_t *row = picture_row(picture, role, y);
+	const bool half = picture->frame.header.planes[0].format == PURSUIT_FORMAT_RGBA16F && role == PURSUIT_ROLE_COLOR;
+	row[(half ? 8 : 4) * pick(sequence, picture->width) +
+		(half ? 1 : pick(sequence, role == PURSUIT_ROLE_UI ? 4 : 3))] ^= half ? 0x1c : 0x55;
+}
+
+static void stand_still(const struct picture *picture)
+{
+	for (uint32_t y = 0; y < picture->height; y++)
+		for (uint32_t x = 0; x < picture->width; x++)
+			picture_set_motion(picture, x, y, 0.0f, 0.0f);
+}
+
+/* The picture as a whole, or as much as one row of it at y; true for the second. */
+static bool change_picture(struct sequence *sequence, uint32_t what, uint32_t y)
+{
+	struct picture *picture = &sequence->picture;
+	switch (what) {
+	case 0:
+		change_kind(sequence, pick(sequence, 2));
+		return false;
+	case 1:
+	case 2:
+		picture_fill_random(picture, PURSUIT_ROLE_COLOR, pick(sequence, 1000));
+		if (what == 2)
+			move(sequence, 0.5f * (float)(1 + pick(sequence, 40)));
+		return false;
+	case 3:
+	case 4:
+		change_row(sequence, PURSUIT_ROLE_COLOR, y);
+		return true;
+	case 5:
+		if (picture_row(picture, PURSUIT_ROLE_UI, 0))
+			change_row(sequence, PURSUIT_ROLE_UI, y);
+		return true;
+	default:
+		return true;
+	}
+}
+
+/* For a while much changes, then so little that the engine looks for what is as it was; some frames say what. */
+static void change(struct sequence *sequence)
+{
+	struct pursuit_frame_header *header = &sequence->picture.frame.header;
+	const uint32_t what = pick(sequence, sequence->frame_id / 50 % 2 ? 60 : 12);
+	const uint32_t y = pick(sequence, sequence->height);
+	header->flags = 0;
+	stand_still(&sequence->picture);
+	if (!change_picture(sequence, what, y) || pick(sequence, 3))
+		return;
+	header->flags = PURSUIT_FRAME_DAMAGE;
+	header->damage_since = sequence->frame_id;
+	header->damage_count = what <= 5;
+	header->damage[0] = (struct pursuit_rectangle){0, y, sequence->width, 1};
+}
+
+/* Whether the engine left the upload out though nobody had said that nothing changed. */
+static bool was_found(struct sequence *sequence)
+{
+	const struct engine_report *report = engine_get_report(sequence->engine);
+	if (sequence->picture.frame.header.flags)
+		return false;
+	for (uint32_t i = 0; i < report->left_out_count; i++)
+		if (strcmp(report->left_out[i].name, "upload") == 0)
+			return true;
+	return false;
+}
+
+static void begin(struct sequence *sequence)
+{
+	struct error error;
+	struct frame frame = sequence->picture.frame;
+	const struct engine_begin_params params = {1 + pick(sequence, 4), pick(sequence, 2) ? -1.0 : 0.75, 0};
+	frame.header.frame_id = ++sequence->frame_id;
+	frame.stream = 7;
+	CHECK_INT(engine_begin(sequence->engine, &frame, &params, &error), 0);
+	sequence->found += was_found(sequence);
+	frame.stream = 0;
+	frame.header.flags = 0;
+	CHECK_INT(engine_begin(sequence->anew, &frame, &params, &error), 0);
+}
+
+static bool is_same(const struct sequence *sequence, const struct engine_image *image)
+{
+	const size_t bytes = image->stride * sequence->picture.height;
+	for (size_t i = 0; i < bytes; i++)
+		if (image->data[i] != sequence->expected[i])
+			return false;
+	return true;
+}
+
+static void show(struct sequence *sequence, uint32_t seed)
+{
+	struct error error;
+	struct engine_image *image = &sequence->images[pick(sequence, IMAGES)];
+	struct engine_image expected = {.data = sequence->expected, .stride = image->stride};
+	const struct engine_request request = {(enum engine_show)pick(sequence, 3), 0.25 * pick(sequence, 5)};
+	CHECK_INT(engine_render(sequence->engine, &request, image, &error), 0);
+	CHECK_INT(engine_render(sequence->anew, &request, &expected, &error), 0);
+	const bool same = is_same(sequence, image);
+	CHECK(same);
+	if (!same)
+		fprintf(stderr, "%s, %s, seed %u: frame %u shows something else\n", kind, sequence->method, seed,
+				(unsigned)sequence->frame_id);
+}
+
+static void run_seed(uint32_t seed)
+{
+	struct error error;
+	struct sequence sequence = {.random = seed};
+	struct engine_params params = some_params(&sequence);
+	sequence.engine = engine_create(&params, &error);
+	params.threads = 1;
+	sequence.anew = engine_create(&params, &error);
+	if (!sequence.engine || !sequence.anew) {
+		fprintf(stderr, "%s\n", error.text);
+		exit(77);
+	}
+	change_kind(&sequence, false);
+	for (uint32_t i = 0; i < FRAMES; i++) {
+		change(&sequence);
+		if (pick(&sequence, 40) == 0) {
+			params = some_params(&sequence);
+			CHECK_INT(engine_set_params(sequence.engine, &params, &error), 0);
+			CHECK_INT(engine_set_params(sequence.anew, &params, &error), 0);
+		}
+		begin(&sequence);
+		for (uint32_t shown = pick(&sequence, 4); shown > 0; shown--)
+			show(&sequence, seed);
+	}
+	CHECK(sequence.found > 0 || strcmp(kind, "cpu") != 0);
+	engine_destroy(&sequence.engine);
+	engine_destroy(&sequence.anew);
+	forget_images(&sequence);
+	picture_finish(&sequence.picture);
+}
+
+static void test_sequences(void)
+{
+	for (uint32_t seed = 1; seed <= SEEDS; seed++)
+		run_seed(seed);
+}
+
+int main(int argc, char **argv)
+{
+	kind = argc > 1 ? argv[1] : "cpu";
+	RUN(test_sequences);
+	return test_result();
+}
