@@ -374,6 +374,99 @@ static void test_contexts_agree(void)
 	free(want);
 }
 
+/* ---- failures ---- */
+
+static uint32_t fails_at; /* the call, counted from 1, that fails; 0: none */
+
+static bool fails(void)
+{
+	return fails_at > 0 && --fails_at == 0;
+}
+
+static GLenum fail_framebuffer(GLenum target)
+{
+	const GLenum status = real.CheckFramebufferStatus(target);
+	return fails() ? GL_FRAMEBUFFER_UNSUPPORTED : status;
+}
+
+static void *fail_map(GLenum target, GLintptr offset, GLsizeiptr length, GLbitfield access)
+{
+	return fails() ? NULL : real.MapBufferRange(target, offset, length, access);
+}
+
+static GLboolean fail_unmap(GLenum target)
+{
+	const GLboolean good = real.UnmapBuffer(target);
+	return fails() ? GL_FALSE : good;
+}
+
+/* A frame of which any step may fail. True if one did. */
+static bool try_all(struct engine *engine, const struct picture *picture, uint8_t *out)
+{
+	struct error error = {""};
+	const struct engine_begin_params how = {.n = 3, .last_phase = -1.0};
+	struct engine_image image = {.data = out, .stride = 4 * (size_t)picture->width};
+	const struct engine_request requests[] = {{ENGINE_SHOW_REAL, 0.0}, {ENGINE_SHOW_IN_BETWEEN, 1.0 / 3}};
+	bool failed = engine_begin(engine, &picture->frame, &how, &error) < 0;
+	for (int i = 0; i < 2 && !failed; i++)
+		failed = engine_render(engine, &requests[i], &image, &error) < 0;
+	CHECK(!failed || error.text[0]);
+	return failed;
+}
+
+static void show_both(struct engine *engine, const struct picture *picture, uint8_t *out)
+{
+	begin(engine, picture, 3);
+	show(engine, picture, ENGINE_SHOW_REAL, 0.0, out);
+	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 1.0 / 3, out + 4 * (size_t)picture->width * picture->height);
+}
+
+/* Whatever fails while a frame of another size is taken and shown: the next one is shown as if nothing had. */
+static void check_failures(enum engine_analysis analysis)
+{
+	struct engine_params own = params;
+	struct picture small, large;
+	const size_t bytes = (size_t)2 * 4 * 400 * 300;
+	uint8_t *want = malloc(bytes), *out = malloc(bytes);
+	uint32_t count = 0;
+	bool failed = true;
+	own.analysis = analysis;
+	struct engine *engine = make(&own);
+	struct gl *gl = &gl_of(engine)->context->gl;
+	draw(&small, 200, 150, 0.0);
+	draw(&large, 400, 300, 0.7);
+	buffer(engine);
+	show_both(engine, &large, want);
+	real = *gl;
+	gl->CheckFramebufferStatus = fail_framebuffer;
+	gl->MapBufferRange = fail_map;
+	gl->UnmapBuffer = fail_unmap;
+	while (failed) {
+		fails_at = 0;
+		show_both(engine, &small, out);
+		fails_at = ++count;
+		failed = try_all(engine, &large, out) || fails_at == 0;
+		fails_at = 0;
+		show_both(engine, &large, out);
+		const bool same = memcmp(out, want, bytes) == 0;
+		CHECK(same);
+		if (!same)
+			fprintf(stderr, "after failure %u another picture is shown\n", count);
+	}
+	CHECK(count > 15);
+	picture_finish(&small);
+	picture_finish(&large);
+	engine_destroy(&engine);
+	free(want);
+	free(out);
+}
+
+static void test_failures(void)
+{
+	check_failures(ENGINE_ANALYSIS_CPU);
+	check_failures(ENGINE_ANALYSIS_GPU);
+}
+
 /* ---- times ---- */
 
 static bool is_on_cpu(const char *name)
@@ -457,6 +550,7 @@ int main(int argc, char **argv)
 	RUN(test_read_back);
 	RUN(test_still_is_not_drawn_twice);
 	RUN(test_contexts_agree);
+	RUN(test_failures);
 	RUN(test_timer_queries);
 	return test_result();
 }

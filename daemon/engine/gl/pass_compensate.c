@@ -14,7 +14,9 @@ static int make_targets(struct engine *engine, struct error *error)
 	const struct gl *gl = table_of(engine);
 	uint32_t width = engine->width, height = engine->height;
 	struct target *real = picture_of(engine, PICTURE_REAL), *between = picture_of(engine, PICTURE_BETWEEN);
-	bool resized = real->width != width || real->height != height;
+	/* Each by itself: one of them may have failed the last time. */
+	const bool resized =
+		real->width != width || real->height != height || between->width != width || between->height != height;
 	int result = target_resize(real, gl, width, height, error);
 	if (result == 0)
 		result = target_resize(between, gl, width, height, error);
