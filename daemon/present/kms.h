@@ -73,6 +73,7 @@ struct kms {
 	struct presenter_flip reports[KMS_REPORTS];
 	uint32_t report_count;
 	bool told_loss;
+	bool asks; /* for the vblank after the one that was heard */
 };
 
 /* What the controller is to show for it. */

@@ -106,8 +106,7 @@ static void on_vblank(void *data, uint64_t sequence, uint64_t time_ns)
 	if (!kms->running)
 		return;
 	keep_reports(kms, reports, scanout_vblank(&kms->scanout, &flip, reports));
-	if (kms_device_queue_sequence(kms->device, sequence + 1) < 0)
-		kms_lose(kms, "it counts no vblanks any more");
+	kms->asks = true;
 }
 
 static void on_flipped(void *data, uint64_t sequence)
@@ -174,6 +173,42 @@ static void come_back(struct kms *kms)
 	log_info(kms->params.log, "kms: back on display");
 }
 
+/* ---- what the user hears ---- */
+
+/* Without the lock. */
+static void tell_flips(struct kms *kms)
+{
+	for (uint32_t i = 0; i < kms->report_count; i++)
+		kms->params.flip(kms->params.data, &kms->reports[i]);
+	kms->report_count = 0;
+}
+
+static void tell_loss(struct kms *kms, bool lost)
+{
+	if (lost && !kms->told_loss && kms->params.lost)
+		kms->params.lost(kms->params.data, kms->loss.text);
+	kms->told_loss = lost;
+}
+
+/* With the lock, which is given up meanwhile: a flip is told before anything else is done. */
+static void hand_on_flips(struct kms *kms)
+{
+	if (kms->report_count == 0)
+		return;
+	pthread_mutex_unlock(&kms->lock);
+	tell_flips(kms);
+	pthread_mutex_lock(&kms->lock);
+}
+
+/* With the lock. */
+static void ask_for_vblank(struct kms *kms)
+{
+	const bool ask = kms->asks && kms->running && !kms->away;
+	kms->asks = false;
+	if (ask && kms_device_queue_sequence(kms->device, kms->sequence + 1) < 0)
+		kms_lose(kms, "it counts no vblanks any more");
+}
+
 /* ---- the thread ---- */
 
 static bool is_to_choose(const struct kms *kms, uint64_t vblank)
@@ -215,6 +250,8 @@ static void act(struct kms *kms, const struct pollfd *fds)
 	uint64_t count;
 	if (fds[0].revents && kms_device_read_events(kms->device, &events) < 0 && errno != EAGAIN && errno != EINTR)
 		kms_lose(kms, strerror(errno));
+	hand_on_flips(kms);
+	ask_for_vblank(kms);
 	if (fds[1].revents && read(kms->wake, &count, sizeof(count)) < 0)
 		log_debug(kms->params.log, "kms: eventfd: %s", strerror(errno));
 	if (fds[2].revents) {
@@ -225,17 +262,6 @@ static void act(struct kms *kms, const struct pollfd *fds)
 			come_back(kms);
 	}
 	act_on_time(kms);
-}
-
-/* Gives reports and the loss to the user, without the lock. */
-static void tell(struct kms *kms, bool lost)
-{
-	for (uint32_t i = 0; i < kms->report_count; i++)
-		kms->params.flip(kms->params.data, &kms->reports[i]);
-	kms->report_count = 0;
-	if (lost && !kms->told_loss && kms->params.lost)
-		kms->params.lost(kms->params.data, kms->loss.text);
-	kms->told_loss = lost;
 }
 
 /* What it measures is the display, and it runs for microseconds a vblank. Not permitted to most. */
@@ -276,7 +302,8 @@ void *kms_run(void *data)
 		if (lost)
 			fds[0].fd = -1; /* a controller that is gone would wake us for ever */
 		pthread_mutex_unlock(&kms->lock);
-		tell(kms, lost);
+		tell_flips(kms);
+		tell_loss(kms, lost);
 		if (ppoll(fds, 3, then_ns == UINT64_MAX ? NULL : &timeout, NULL) < 0)
 			for (int i = 0; i < 3; i++)
 				fds[i].revents = 0;
