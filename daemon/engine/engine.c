@@ -98,6 +98,12 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 		executor->ops->keep_original(executor);
 		engine->stream = 0;
 	}
+	/* A frame of another stream is not the frame before. */
+	if (engine->sequence != frame->stream) {
+		pixel_state_forget(&engine->pixels);
+		bend_forget(&engine->bend);
+	}
+	engine->sequence = frame->stream;
 	engine->job = (struct job){.frame = frame};
 	engine->rested = engine->begun && !engine->moves && !engine->compensated;
 	engine->begun = engine->moves = engine->compensated = false;

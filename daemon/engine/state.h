@@ -51,6 +51,7 @@ struct engine {
 	/* The frame begun last. */
 	bool begun;
 	uint64_t frame_id, stream;                  /* stream 0: ORIGINAL and UI are not what that frame left there */
+	uint64_t sequence;                          /* the stream that it was of, whatever is left of it */
 	struct pursuit_plane color_plane, ui_plane; /* as they were taken; role 0: none */
 	struct damage damage;
 	uint64_t content;        /* a number of ORIGINAL with its UI, never used twice */

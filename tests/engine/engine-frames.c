@@ -338,6 +338,27 @@ static void test_damage(void)
 	picture_finish(&picture);
 }
 
+/* What is between two frames of a stream has nothing of another stream's; also if settings change in between. */
+static void test_streams_do_not_mix(void)
+{
+	const struct engine_params interpolate = {.method = "interpolate"};
+	struct picture picture;
+	picture_init(&picture, 160, 90, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
+	set(interpolate);
+	for (uint64_t stream = 11; stream < 14; stream++) {
+		picture_draw_layers(&picture, (double)stream);
+		picture.frame.stream = stream;
+		set(interpolate);
+		begin(&picture, 2);
+		CHECK_INT(wrong_rows(&picture), 0);
+	}
+	/* The next one of the same stream comes a frame late, as it should. */
+	picture_draw_layers(&picture, 20.0);
+	begin(&picture, 2);
+	CHECK(wrong_rows(&picture) > 80);
+	picture_finish(&picture);
+}
+
 /* Memory that holds the picture already is not written; whatever shows something else is. */
 static void test_held(void)
 {
@@ -397,6 +418,7 @@ int main(int argc, char **argv)
 	RUN(test_covered);
 	RUN(test_light);
 	RUN(test_damage);
+	RUN(test_streams_do_not_mix);
 	RUN(test_held);
 	RUN(test_plan_is_printed);
 	engine_destroy(&engine);
