@@ -57,7 +57,8 @@ struct glfw {
 	bool under_way, stuck_said, by_clock; /* by_clock: no vblank waits for its swap */
 	uint32_t missing, quick;              /* swaps in a row */
 	uint64_t ordered_ns;
-	uint32_t image; /* under way, referenced; FLIPS_IMAGES: none */
+	uint32_t image;        /* under way, referenced; FLIPS_IMAGES: none */
+	uint64_t drawn_serial; /* of the picture ordered last; 0: black */
 	uint32_t drawn_changes, probed_displays;
 	bool waits_for_display; /* swaps do */
 	struct vblanks vblanks;
@@ -79,6 +80,7 @@ static void order(struct glfw *self, uint32_t swaps)
 	self->under_way = true;
 	self->ordered_ns = clock_now(pictures->params.clock);
 	self->drawn_changes = self->state.changes;
+	self->drawn_serial = flips->has_front ? flips->front.serial : 0;
 	drawer_order(self->drawer, flips->has_front ? &pictures->shapes[self->image] : NULL, self->state.width,
 				 self->state.height, swaps);
 }
@@ -134,6 +136,14 @@ static bool can_draw(struct glfw *self)
 	if (was_under_way && self->by_clock)
 		judge_swap(self, (double)(swap.time_ns - self->ordered_ns) < 1.5 * grid_period_ns(&self->pictures.grid));
 	return !self->state.hidden;
+}
+
+/* Does the window show something else? A front that came while a swap was under way was not ordered then. */
+static bool is_due(const struct glfw *self)
+{
+	const struct flips *flips = &self->pictures.flips;
+	const uint64_t serial = flips->has_front ? flips->front.serial : 0;
+	return serial != self->drawn_serial || self->state.changes != self->drawn_changes;
 }
 
 /* ---- the keeper: the display's rate ---- */
@@ -243,8 +253,7 @@ static void keep_vblank(struct glfw *self)
 	flip.skipped += self->skipped;
 	self->skipped = 0;
 	flip.time_source = PRESENTER_TIME_TIMER;
-	const bool due = flip.shown != PRESENTER_KEPT || self->state.changes != self->drawn_changes;
-	if (due && can_draw(self)) {
+	if (is_due(self) && can_draw(self)) {
 		order(self, 1);
 		if (!self->by_clock) {
 			const bool back = wait_for_order(self, grid_time(&pictures->grid, flip.vblank + 2), &swap);
@@ -277,12 +286,13 @@ static void keep_still(struct glfw *self)
 {
 	struct pictures *pictures = &self->pictures;
 	struct drawer_swap swap;
-	if (self->state.changes != self->drawn_changes && can_draw(self)) {
+	const bool due = is_due(self);
+	if (due && can_draw(self))
 		order(self, 1);
+	if (due && self->under_way)
 		wait_for_order(self, clock_now(pictures->params.clock) + PROBE_NS, &swap);
-	} else {
+	else
 		pthread_cond_wait(&pictures->wake, &pictures->lock);
-	}
 }
 
 static void *run(void *data)

@@ -234,6 +234,28 @@ static void test_hidden_window(void)
 	stop(SIGTERM);
 }
 
+/* The last picture before a pause came while a swap hung: it is drawn when that is back, though no other one comes. */
+static void test_server_that_hangs(void)
+{
+	start("glfw");
+	CHECK(play_until_pixel(WIDTH - 1, 0, 0xffffff, true));
+	kill(xvfb.pid, SIGSTOP);
+	for (int i = 0; i < 20; i++) {
+		corner = i < 15 ? 0x10 : 0x20;
+		submit_one();
+	}
+	sleep_ms(500);
+	kill(xvfb.pid, SIGCONT);
+	bool shown = false;
+	for (int i = 0; i < PATIENCE_FRAMES && !shown; i++) {
+		shown = xvfb_pixel(&xvfb, window, WIDTH - 1, 0) == 0xffffff - 0x20;
+		sleep_ms(25);
+	}
+	CHECK(shown);
+	corner = 0;
+	stop(SIGTERM);
+}
+
 /* The display server dies: the next presenter of the list takes over, the client stays. */
 static void test_lost_server(void)
 {
@@ -304,6 +326,7 @@ int main(int argc, char **argv)
 	RUN(test_keys);
 	RUN(test_help_without_a_game);
 	RUN(test_hidden_window);
+	RUN(test_server_that_hangs);
 	RUN(test_lost_server);
 	RUN(test_server_that_comes_back); /* goes on where that ended */
 	RUN(test_server_that_is_waited_for);
