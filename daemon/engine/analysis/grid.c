@@ -90,6 +90,20 @@ static int reserve(void **data, uint32_t *capacity, size_t count, size_t size)
 	return 0;
 }
 
+int plan_scratch_reserve(struct plan *plan, struct plan_arena *arena)
+{
+	if (arena->used > plan->scratch_bytes) {
+		free(plan->scratch);
+		plan->scratch_bytes = 0;
+		plan->scratch = aligned_alloc(64, arena->used);
+		if (!plan->scratch)
+			return -ENOMEM;
+		plan->scratch_bytes = arena->used;
+	}
+	*arena = (struct plan_arena){plan->scratch, 0};
+	return 0;
+}
+
 int plan_grid_reserve(struct plan *plan)
 {
 	const uint32_t cell = plan->cell, columns = (plan->width + cell - 1) / cell + 2;

@@ -43,6 +43,10 @@ struct plan_grid {
 void plan_grid_init(struct plan_grid *grid, const struct frame *frame, uint32_t cell, uint32_t threshold,
 					struct plan_arena *arena);
 
+/* Gives the plan scratch for all that was taken from the arena, which was only counted; the arena then begins there. 0
+ * or -ENOMEM. */
+int plan_scratch_reserve(struct plan *plan, struct plan_arena *arena);
+
 /* Makes room for the vertices and triangles of a plan whose width, height and cell are set, sets columns and rows. 0 or
  * -ENOMEM. */
 int plan_grid_reserve(struct plan *plan);

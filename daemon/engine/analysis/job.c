@@ -53,15 +53,8 @@ static int prepare(struct plan *plan, struct plan_grid *grid, uint8_t **tiles, c
 {
 	struct plan_arena arena = {NULL, 0};
 	lay_out(grid, tiles, frame, job, &arena);
-	if (arena.used > plan->scratch_bytes) {
-		free(plan->scratch);
-		plan->scratch_bytes = 0;
-		plan->scratch = aligned_alloc(64, arena.used);
-		if (!plan->scratch)
-			return -ENOMEM;
-		plan->scratch_bytes = arena.used;
-	}
-	arena = (struct plan_arena){plan->scratch, 0};
+	if (plan_scratch_reserve(plan, &arena) < 0)
+		return -ENOMEM;
 	lay_out(grid, tiles, frame, job, &arena);
 	return plan_grid_reserve(plan);
 }

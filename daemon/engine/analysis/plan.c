@@ -34,15 +34,8 @@ static int prepare(struct plan *plan, struct plan_bands *bands, const struct fra
 {
 	struct plan_arena arena = {NULL, 0};
 	plan_bands_init(bands, frame, &arena);
-	if (arena.used > plan->scratch_bytes) {
-		free(plan->scratch);
-		plan->scratch_bytes = 0;
-		plan->scratch = aligned_alloc(64, arena.used);
-		if (!plan->scratch)
-			return -ENOMEM;
-		plan->scratch_bytes = arena.used;
-	}
-	arena = (struct plan_arena){plan->scratch, 0};
+	if (plan_scratch_reserve(plan, &arena) < 0)
+		return -ENOMEM;
 	plan_bands_init(bands, frame, &arena);
 	return plan_grid_reserve(plan);
 }
