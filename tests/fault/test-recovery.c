@@ -23,8 +23,8 @@
 #include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
 #include "tests/daemon/raw-client.h"
+#include "tests/fault/game.h"
 
-#define FRAME_MS 16u
 #define ROUNDS 5
 #define MOST_STEPS 4000u
 
@@ -33,45 +33,14 @@ static unsigned kills = 40;
 
 /* ---- a game ---- */
 
-static struct pursuit_stream *open_stream(void)
-{
-	const struct pursuit_stream_params params = {.width = 64,
-												 .height = 48,
-												 .depth_format = PURSUIT_DEPTH_FLOAT32,
-												 .motion_format = PURSUIT_MOTION_FLOAT16,
-												 .socket_path = fixture.socket};
-	struct pursuit_stream *stream = pursuit_open(&params);
-	CHECK(stream != NULL);
-	return stream;
-}
-
-static bool is_attached(struct pursuit_stream *stream)
-{
-	struct pursuit_status status;
-	pursuit_get_status(stream, &status);
-	return status.state == PURSUIT_STATE_ATTACHED;
-}
-
-/* Renders one frame; the time that the shim took of it, ns. */
-static uint64_t play_frame(struct pursuit_stream *stream)
-{
-	const uint64_t start = now_ns();
-	struct pursuit_frame *frame = pursuit_acquire(stream);
-	if (frame)
-		pursuit_submit(stream, frame);
-	const uint64_t taken = now_ns() - start;
-	sleep_ms(FRAME_MS);
-	return taken;
-}
-
 /* Plays until attached, 20 s at most; the longest time in the shim goes into *longest_ns. */
 static bool play_until_attached(struct pursuit_stream *stream, uint64_t *longest_ns)
 {
-	for (int i = 0; i < 1250 && !is_attached(stream); i++) {
-		const uint64_t taken = play_frame(stream);
+	for (int i = 0; i < 1250 && !game_is_attached(stream); i++) {
+		const uint64_t taken = game_play_frame(stream);
 		*longest_ns = taken > *longest_ns ? taken : *longest_ns;
 	}
-	return is_attached(stream);
+	return game_is_attached(stream);
 }
 
 static int by_size(const void *a, const void *b)
@@ -84,18 +53,19 @@ static void test_daemon_killed(void)
 {
 	uint64_t back_ns[ROUNDS], longest_ns[ROUNDS] = {0};
 	fixture_start(&fixture, NULL);
-	struct pursuit_stream *stream = open_stream();
+	struct pursuit_stream *stream = game_open(fixture.socket);
+	CHECK(stream != NULL);
 	CHECK(play_until_attached(stream, &longest_ns[0]));
 	for (int round = 0; round < ROUNDS; round++) {
 		longest_ns[round] = 0;
 		for (int i = 0; i < 5; i++)
-			play_frame(stream);
+			game_play_frame(stream);
 		CHECK_INT(fixture_stop(&fixture, SIGKILL), 128 + SIGKILL);
 		for (int i = 0; i < 10; i++) {
-			const uint64_t taken = play_frame(stream);
+			const uint64_t taken = game_play_frame(stream);
 			longest_ns[round] = taken > longest_ns[round] ? taken : longest_ns[round];
 		}
-		CHECK(!is_attached(stream));
+		CHECK(!game_is_attached(stream));
 		fixture_start(&fixture, NULL);
 		const uint64_t start = now_ns();
 		CHECK(play_until_attached(stream, &longest_ns[round]));
@@ -107,7 +77,7 @@ static void test_daemon_killed(void)
 		   ROUNDS, (double)back_ns[ROUNDS / 2] / 1e6, (double)back_ns[ROUNDS - 1] / 1e6,
 		   (double)longest_ns[ROUNDS / 2] / 1e6, (double)longest_ns[ROUNDS - 1] / 1e6);
 	/* The machine may be busy, but not in all rounds alike. */
-	CHECK(longest_ns[0] < FRAME_MS * 1000000u);
+	CHECK(longest_ns[0] < GAME_FRAME_MS * 1000000u);
 	pursuit_close(&stream);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }
@@ -173,7 +143,8 @@ static pid_t fork_client(bool traced)
 	uint64_t longest = 0;
 	if (traced && ptrace(PTRACE_TRACEME, 0, NULL, NULL) < 0)
 		_exit(77);
-	struct pursuit_stream *stream = open_stream();
+	struct pursuit_stream *stream = game_open(fixture.socket);
+	CHECK(stream != NULL);
 	if (!play_until_attached(stream, &longest))
 		_exit(1);
 	if (traced)

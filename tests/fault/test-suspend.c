@@ -16,42 +16,10 @@
 #include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
 #include "tests/daemon/raw-client.h"
-
-#define FRAME_MS 16u
+#include "tests/fault/game.h"
 
 static struct fixture fixture;
 static unsigned seconds = 3;
-
-static struct pursuit_stream *open_stream(void)
-{
-	const struct pursuit_stream_params params = {.width = 64,
-												 .height = 48,
-												 .depth_format = PURSUIT_DEPTH_FLOAT32,
-												 .motion_format = PURSUIT_MOTION_FLOAT16,
-												 .socket_path = fixture.socket};
-	struct pursuit_stream *stream = pursuit_open(&params);
-	CHECK(stream != NULL);
-	return stream;
-}
-
-static bool is_attached(struct pursuit_stream *stream)
-{
-	struct pursuit_status status;
-	pursuit_get_status(stream, &status);
-	return status.state == PURSUIT_STATE_ATTACHED;
-}
-
-/* One frame of a game; the time that the shim took of it, ns. */
-static uint64_t play_frame(struct pursuit_stream *stream)
-{
-	const uint64_t start = now_ns();
-	struct pursuit_frame *frame = pursuit_acquire(stream);
-	if (frame)
-		pursuit_submit(stream, frame);
-	const uint64_t taken = now_ns() - start;
-	sleep_ms(FRAME_MS);
-	return taken;
-}
 
 /* Reports read now that say "shown" of frames submitted after a time. */
 static unsigned count_shown(struct pursuit_stream *stream, uint64_t after_ns)
@@ -69,7 +37,7 @@ static uint64_t play_until_shown(struct pursuit_stream *stream, unsigned wanted)
 	const uint64_t start = now_ns();
 	unsigned shown = 0;
 	for (int i = 0; i < 1250 && shown < wanted; i++) {
-		play_frame(stream);
+		game_play_frame(stream);
 		shown += count_shown(stream, start);
 	}
 	CHECK(shown >= wanted);
@@ -101,14 +69,15 @@ static void test_daemon_suspended(void)
 {
 	uint64_t longest_ns = 0, quick = 0, calls = 0;
 	fixture_start(&fixture, NULL);
-	struct pursuit_stream *stream = open_stream();
+	struct pursuit_stream *stream = game_open(fixture.socket);
+	CHECK(stream != NULL);
 	play_until_shown(stream, 5);
 	kill(fixture.pid, SIGSTOP);
 	for (const uint64_t end = now_ns() + seconds * UINT64_C(1000000000); now_ns() < end; calls++) {
-		const uint64_t taken = play_frame(stream);
+		const uint64_t taken = game_play_frame(stream);
 		longest_ns = taken > longest_ns ? taken : longest_ns;
-		quick += taken < FRAME_MS * UINT64_C(1000000);
-		CHECK(is_attached(stream));
+		quick += taken < GAME_FRAME_MS * UINT64_C(1000000);
+		CHECK(game_is_attached(stream));
 	}
 	kill(fixture.pid, SIGCONT);
 	const uint64_t back_ns = play_until_shown(stream, 1);
@@ -117,7 +86,7 @@ static void test_daemon_suspended(void)
 	/* The machine may be busy, but not in most calls. */
 	CHECK(quick > calls / 2);
 	play_until_shown(stream, 30);
-	CHECK(is_attached(stream));
+	CHECK(game_is_attached(stream));
 	CHECK_INT(figure("streams"), 1);
 	CHECK_INT(figure("engine_losses"), 0);
 	CHECK_INT(figure("refused_frames"), 0);
@@ -145,9 +114,10 @@ static pid_t start_client(void)
 	const pid_t child = fork();
 	if (child != 0)
 		return child;
-	struct pursuit_stream *stream = open_stream();
+	struct pursuit_stream *stream = game_open(fixture.socket);
+	CHECK(stream != NULL);
 	for (;;)
-		play_frame(stream);
+		game_play_frame(stream);
 }
 
 static bool wait_for_streams(json_int_t wanted)
@@ -164,7 +134,8 @@ static bool wait_for_streams(json_int_t wanted)
 static void test_client_suspended(void)
 {
 	fixture_start(&fixture, NULL);
-	struct pursuit_stream *stream = open_stream();
+	struct pursuit_stream *stream = game_open(fixture.socket);
+	CHECK(stream != NULL);
 	play_until_shown(stream, 3);
 	const pid_t child = start_client();
 	CHECK(wait_for_streams(2));
@@ -173,7 +144,7 @@ static void test_client_suspended(void)
 	focus(getpid());
 	const uint64_t shown_ns = play_until_shown(stream, 1);
 	while (now_ns() < end)
-		play_frame(stream);
+		game_play_frame(stream);
 	play_until_shown(stream, 10);
 	CHECK_INT(figure("streams"), 2);
 	printf("       client suspended for %u s: another one is shown %.0f ms after it is chosen\n", seconds,

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "tests/fault/game.h"
+
+#include "tests/daemon/fixture.h"
+
+struct pursuit_stream *game_open(const char *socket)
+{
+	const struct pursuit_stream_params params = {.width = 64,
+												 .height = 48,
+												 .depth_format = PURSUIT_DEPTH_FLOAT32,
+												 .motion_format = PURSUIT_MOTION_FLOAT16,
+												 .socket_path = socket};
+	return pursuit_open(&params);
+}
+
+bool game_is_attached(struct pursuit_stream *stream)
+{
+	struct pursuit_status status;
+	pursuit_get_status(stream, &status);
+	return status.state == PURSUIT_STATE_ATTACHED;
+}
+
+uint64_t game_play_frame(struct pursuit_stream *stream)
+{
+	const uint64_t start = now_ns();
+	struct pursuit_frame *frame = pursuit_acquire(stream);
+	if (frame)
+		pursuit_submit(stream, frame);
+	const uint64_t taken = now_ns() - start;
+	sleep_ms(GAME_FRAME_MS);
+	return taken;
+}
