@@ -535,9 +535,9 @@ int main(int argc, char **argv)
 	pthread_create(&neighbour.thread, NULL, be_served, NULL);
 	check_neighbour();
 	for (size_t i = 0; i < sizeof(tests) / sizeof(tests[0]); i++) {
-		const int before = test_state.failed;
+		const int before = test_failed();
 		with_neighbour(tests[i].run);
-		printf("%s %s\n", test_state.failed == before ? "ok    " : "FAILED", tests[i].name);
+		printf("%s %s\n", test_failed() == before ? "ok    " : "FAILED", tests[i].name);
 		fflush(stdout);
 	}
 	neighbour.stop = true;

@@ -361,7 +361,7 @@ static uint64_t fail_in_turn(const struct part *part, enum fault_kind kind)
 		CHECK_INT(fuzz_open_fds(), open_fds);
 		if (!came || harmless)
 			CHECK(fine);
-		if (test_state.failed) {
+		if (test_failed()) {
 			fprintf(stderr, "%s, %s, call %llu\n", part->name, fault_name(kind), (unsigned long long)index);
 			break;
 		}
@@ -377,7 +377,7 @@ static void test_each_call(void)
 	uint64_t together = 0;
 	for (size_t i = 0; i < sizeof(parts) / sizeof(parts[0]); i++) {
 		printf("       %-9s", parts[i].name);
-		for (int kind = FAULT_NONE + 1; kind < FAULT_KINDS && !test_state.failed; kind++) {
+		for (int kind = FAULT_NONE + 1; kind < FAULT_KINDS && !test_failed(); kind++) {
 			const uint64_t calls = fail_in_turn(&parts[i], (enum fault_kind)kind);
 			together += calls;
 			printf(" %s %llu%s", fault_name((enum fault_kind)kind), (unsigned long long)calls,

@@ -32,7 +32,7 @@ static void run(const char *display, const char *client, uint64_t vblanks, struc
 {
 	const struct simulation simulation = {
 		.display = *display_of(display), .client = *client_of(client), .vblanks = vblanks};
-	const int before = test_state.failed;
+	const int before = test_failed();
 	simulation_run(&simulation, result);
 	/*
 	 * What holds for all of them. A real frame is later than it could be only while nobody knows the display: for the
@@ -46,7 +46,7 @@ static void run(const char *display, const char *client, uint64_t vblanks, struc
 	CHECK(result->doubled <= 6);
 	const double shown = (double)(result->real + result->in_betweens + result->repeats);
 	CHECK(shown >= (double)result->vblanks * (0.98 - 1.5 * simulation.display.miss));
-	if (test_state.failed != before)
+	if (test_failed() != before)
 		printf("       ... %s on %s\n", client, display);
 }
 
@@ -160,13 +160,13 @@ static void test_all_settle_in_half_a_second(void)
 {
 	for (const struct simulated_display *d = simulated_displays; d->name; d++) {
 		for (const struct simulated_client *c = simulated_clients; c->name; c++) {
-			const int before = test_state.failed;
+			const int before = test_failed();
 			struct simulation_result r;
 			run(d->name, c->name, VBLANKS, &r);
 			CHECK(!(r.settle_s > settling_bound(d, c)));
 			if (c->noise_ms == 0.0 && c->uneven == 0.0 && !c->ramps)
 				CHECK_NEAR(r.phase_p99, 0, 0.05);
-			if (test_state.failed != before)
+			if (test_failed() != before)
 				printf("       ... %s on %s\n", c->name, d->name);
 		}
 	}

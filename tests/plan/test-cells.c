@@ -94,7 +94,7 @@ static void check_spec(const struct fixture_spec *spec, const struct plan_params
 	const struct plan_params *params = field < FIELD_FLOATS ? &tiny : given;
 	struct fixture fixture;
 	char what[96];
-	int failed = test_state.failed;
+	int failed = test_failed();
 	fixture_make(&fixture, spec);
 	fixture_fill(&fixture, field, seed);
 	snprintf(what, sizeof(what), "%ux%u %s, motion %u, depth %u/%u, cell %u", spec->width, spec->height,
@@ -102,7 +102,7 @@ static void check_spec(const struct fixture_spec *spec, const struct plan_params
 	check_case(&fixture, params, field < FIELD_FLOATS, what);
 	fixture.frame.volatile_memory = true;
 	check_case(&fixture, params, field < FIELD_FLOATS, what);
-	if (test_state.failed != failed)
+	if (test_failed() != failed)
 		fprintf(stderr, "in %s\n", what);
 	fixture_finish(&fixture);
 }

@@ -79,7 +79,7 @@ static void check_spec(const struct fixture_spec *spec, uint32_t cell, enum fixt
 	struct plan_params params = {.cell = cell, .last_phase = 0.5f, .threshold_quarter = 1, .display_width_mm = 1};
 	struct fixture fixture;
 	struct error error;
-	int failed = test_state.failed;
+	int failed = test_failed();
 	fixture_make(&fixture, spec);
 	fixture_fill(&fixture, field, seed);
 	CHECK_INT(plan_make(&plan, &fixture.frame, &params, &error), 0);
@@ -89,7 +89,7 @@ static void check_spec(const struct fixture_spec *spec, uint32_t cell, enum fixt
 		check_border(&plan);
 		check_triangles(&plan);
 	}
-	if (test_state.failed != failed)
+	if (test_failed() != failed)
 		fprintf(stderr, "in %u x %u, cell %u, %s, seed %u\n", spec->width, spec->height, cell,
 				fixture_field_name(field), seed);
 	fixture_finish(&fixture);

@@ -124,7 +124,7 @@ struct how {
 
 static void compare(const struct input_spec *spec, const struct how *how)
 {
-	const int failed = test_state.failed;
+	const int failed = test_failed();
 	const struct engine_params params = {.cell = how->cell,
 										 .threshold_quarter = how->threshold,
 										 .display_width_mm = input_display_mm(spec->width),
@@ -150,7 +150,7 @@ static void compare(const struct input_spec *spec, const struct how *how)
 		check_grid(&plan, &reference);
 	else
 		CHECK_INT(plan.columns * plan.rows + plan.index_count, 0);
-	if (test_state.failed != failed)
+	if (test_failed() != failed)
 		fprintf(stderr, "in: %ux%u field %d seed %llu cell %u n %u motion %u kind %u depth %u kind %u\n", spec->width,
 				spec->height, spec->field, (unsigned long long)spec->seed, how->cell, how->n, spec->motion_format,
 				spec->motion_kind, spec->depth_format, spec->depth_kind);
