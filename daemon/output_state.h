@@ -1,0 +1,67 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The output's inside, private to output.c (life, what main asks), output_streams.c (which stream is shown, with which
+ * settings) and output_thread.c (the render thread).
+ */
+#ifndef PURSUIT_OUTPUT_STATE_H
+#define PURSUIT_OUTPUT_STATE_H
+
+#include <pthread.h>
+
+#include "daemon/display.h"
+#include "daemon/output.h"
+#include "daemon/render.h"
+
+#define OUTPUT_FLIPS 64u
+
+struct output {
+	struct output_params params;
+	struct display *display; /* main's */
+	pthread_t thread;
+	int event_fd;
+
+	_Atomic uint64_t beats;
+	pthread_mutex_t lock; /* the mailbox */
+	pthread_cond_t wake;
+	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed;
+	bool started; /* the thread has said whether it could start */
+	int start_result;
+	struct error start_error;
+	struct stream *streams[OUTPUT_STREAMS]; /* referenced; in the order of opening */
+	uint32_t stream_count;
+	struct presenter *presenter; /* to be used from now on */
+	uint32_t view;
+	struct settings wished; /* by main, for the render thread */
+	struct presenter_flip flips[OUTPUT_FLIPS];
+	uint32_t flip_count;
+	struct output_event events[OUTPUT_EVENTS]; /* for main */
+	uint32_t event_count;
+	struct output_info info;
+
+	pthread_mutex_t stats_lock;
+	struct stats published;
+
+	pthread_mutex_t record_lock;
+	struct recorder *recorder;
+
+	/* the render thread's own */
+	struct settings settings; /* a copy: some change while it runs */
+	struct settings due;      /* what it becomes next */
+	struct stats stats;
+	struct render render;
+	struct stream *own[OUTPUT_STREAMS]; /* referenced copy of streams */
+	uint32_t own_count;
+};
+
+/* With the lock: the render thread looks into its mailbox. */
+void output_wake_locked(struct output *output);
+
+/* Any thread: an event for main. */
+void output_push_event(struct output *output, const struct output_event *event);
+
+/* The render thread; `output` is a struct output. */
+void *output_run(void *output);
+
+#endif
