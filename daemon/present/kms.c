@@ -14,14 +14,7 @@
 #define GUARD_NS (MS + MS / 5)
 /* Made before the first picture; more as they are needed. */
 #define FIRST_BUFFERS 3u
-/* Rows begin at a multiple of 64 bytes. */
-#define COLUMNS 16u
 #define STACK_BYTES ((size_t)256 * 1024)
-
-static struct kms *self_of(struct presenter *presenter)
-{
-	return (struct kms *)presenter;
-}
 
 /* ---- life ---- */
 
@@ -41,7 +34,7 @@ static int light_up(struct kms *kms, struct error *error)
 	uint64_t numerator, denominator;
 	int result = kms_device_create_buffer(kms->device, &kms->backdrop, error);
 	for (uint32_t i = 0; i < FIRST_BUFFERS && result == 0; i++)
-		result = kms_device_create_buffer(kms->device, &kms->pictures[i].buffer, error);
+		result = kms_device_create_buffer(kms->device, &kms->pictures[i].memory.buffer, error);
 	if (result == 0)
 		result = kms_device_show(kms->device, &kms->backdrop, error);
 	if (result < 0)
@@ -59,14 +52,6 @@ static int light_up(struct kms *kms, struct error *error)
 								   kms_device_get_name(kms->device), strerror(-result));
 }
 
-static void destroy_picture(struct kms *kms, struct kms_picture *picture)
-{
-	kms_device_destroy_buffer(kms->device, &picture->buffer);
-	kms_device_destroy_buffer(kms->device, &picture->gl_buffer);
-	if (kms->gl)
-		kms_gl_destroy_buffer(kms->gl, &picture->gl);
-}
-
 static void take_down(struct kms *kms)
 {
 	kms_cable_destroy(&kms->cable);
@@ -74,7 +59,7 @@ static void take_down(struct kms *kms)
 		/* First what was there before, so that the display does not go dark in between. */
 		kms_device_restore(kms->device);
 		for (uint32_t i = 0; i < FLIPS_IMAGES; i++)
-			destroy_picture(kms, &kms->pictures[i]);
+			kms_destroy_picture(kms, &kms->pictures[i]);
 		kms_device_destroy_buffer(kms->device, &kms->backdrop);
 	}
 	kms_gl_destroy(&kms->gl);
@@ -166,7 +151,7 @@ static struct presenter *kms_create(const struct presenter_params *params, struc
 
 static void kms_destroy(struct presenter *presenter)
 {
-	struct kms *kms = self_of(presenter);
+	struct kms *kms = kms_of(presenter);
 	const uint64_t one = 1;
 	pthread_mutex_lock(&kms->lock);
 	kms->stop = true;
@@ -177,181 +162,13 @@ static void kms_destroy(struct presenter *presenter)
 	take_down(kms);
 }
 
-/* ---- pictures ---- */
-
-/* Where a picture begins that lies in the middle. */
-static uint32_t left_of(const struct kms_mode *mode, uint32_t width)
-{
-	return (mode->width - width) / 2 / COLUMNS * COLUMNS;
-}
-
-static uint32_t top_of(const struct kms_mode *mode, uint32_t height)
-{
-	return (mode->height - height) / 2;
-}
-
-static void try_scaler(struct kms *kms, const struct kms_buffer *buffer, const struct kms_rectangle *part)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	pthread_mutex_lock(&kms->lock);
-	const bool ours = !kms->away;
-	kms->scales =
-		(part->width < mode->width || part->height < mode->height) && kms_device_can_scale(kms->device, buffer, part);
-	pthread_mutex_unlock(&kms->lock);
-	if (!ours)
-		return; /* asked again when the display is */
-	kms->tried_width = part->width;
-	kms->tried_height = part->height;
-	log_info(kms->params.log, "kms: pictures of %ux%u on %ux%u: %s", part->width, part->height, mode->width,
-			 mode->height, kms->scales ? "enlarged by the display controller" : "as they are");
-}
-
-/* The controller enlarges a picture that is smaller than the display, if it can; else there is black around it. */
-static void choose_part(struct kms *kms, struct kms_buffer *buffer, uint32_t width, uint32_t height)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	const struct kms_rectangle part = {left_of(mode, width), top_of(mode, height), width, height};
-	if (kms->tried_width != width || kms->tried_height != height)
-		try_scaler(kms, buffer, &part);
-	buffer->part = kms->scales ? part : (struct kms_rectangle){0, 0, 0, 0};
-}
-
-static void place(struct kms *kms, struct kms_picture *picture, uint32_t width, uint32_t height,
-				  struct presenter_image *image)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	const bool same = picture->width == width && picture->height == height;
-	if (!same)
-		memset(picture->buffer.data, 0, picture->buffer.size);
-	choose_part(kms, &picture->buffer, width, height);
-	image->holds = same ? picture->holds : 0;
-	picture->holds = 0;
-	picture->in_gl = false;
-	picture->width = image->width = width;
-	picture->height = image->height = height;
-	image->stride = picture->buffer.stride;
-	image->data = picture->buffer.data + top_of(mode, height) * picture->buffer.stride + left_of(mode, width) * 4;
-}
-
-static void place_in_gl(struct kms *kms, struct kms_picture *picture, uint32_t width, uint32_t height,
-						struct presenter_image *image)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	const bool same = picture->gl_width == width && picture->gl_height == height;
-	if (!same)
-		kms_gl_blacken(kms->gl, &picture->gl);
-	choose_part(kms, &picture->gl_buffer, width, height);
-	image->holds = same ? picture->gl_holds : 0;
-	picture->gl_holds = 0;
-	picture->in_gl = true;
-	picture->gl_width = image->width = width;
-	picture->gl_height = image->height = height;
-	image->texture = picture->gl.texture;
-	image->texture_x = left_of(mode, width);
-	image->texture_y = top_of(mode, height);
-}
-
-static int refuse_size(struct kms *kms, uint32_t width, uint32_t height)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	if (kms->refused_width != width || kms->refused_height != height)
-		log_error(kms->params.log,
-				  "kms: a picture of %ux%u is larger than the display (%ux%u) and is not shown; use a larger --mode or "
-				  "smaller frames",
-				  width, height, mode->width, mode->height);
-	kms->refused_width = width;
-	kms->refused_height = height;
-	return -E2BIG;
-}
-
-/* A free one. Negative errno. */
-static int acquire_index(struct kms *kms, uint32_t width, uint32_t height, struct presenter_image *image)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	if (width > mode->width || height > mode->height)
-		return refuse_size(kms, width, height);
-	pthread_mutex_lock(&kms->lock);
-	const int index = flips_acquire(&kms->scanout.flips);
-	pthread_mutex_unlock(&kms->lock);
-	if (index < 0)
-		return -EBUSY;
-	*image = (struct presenter_image){.index = (uint32_t)index};
-	return index;
-}
-
-static int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
-{
-	struct kms *kms = self_of(presenter);
-	struct error error;
-	const int index = acquire_index(kms, width, height, image);
-	if (index < 0)
-		return index;
-	struct kms_picture *picture = &kms->pictures[index];
-	if (!picture->buffer.data && kms_device_create_buffer(kms->device, &picture->buffer, &error) < 0) {
-		log_warning(kms->params.log, "%s", error.text);
-		presenter->impl->release(presenter, image);
-		return -ENOMEM;
-	}
-	place(kms, picture, width, height, image);
-	return 0;
-}
-
-static const struct presenter_context *kms_get_context(struct presenter *presenter)
-{
-	struct kms *kms = self_of(presenter);
-	return kms->gl ? kms_gl_get_context(kms->gl) : NULL;
-}
-
-/* With the lock for the device, which may be given away meanwhile. */
-static int make_gl_buffer(struct kms *kms, struct kms_picture *picture, struct error *error)
-{
-	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	int result = kms_gl_create_buffer(kms->gl, mode->width, mode->height, &picture->gl, error);
-	if (result < 0)
-		return result;
-	pthread_mutex_lock(&kms->lock);
-	result = kms_device_adopt_buffer(kms->device, picture->gl.handle, picture->gl.stride, &picture->gl_buffer, error);
-	pthread_mutex_unlock(&kms->lock);
-	if (result < 0)
-		kms_gl_destroy_buffer(kms->gl, &picture->gl);
-	return result;
-}
-
-static int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t height,
-							   struct presenter_image *image)
-{
-	struct kms *kms = self_of(presenter);
-	struct error error;
-	const int index = acquire_index(kms, width, height, image);
-	if (index < 0)
-		return index;
-	struct kms_picture *picture = &kms->pictures[index];
-	if (!picture->gl_buffer.framebuffer && make_gl_buffer(kms, picture, &error) < 0) {
-		log_warning(kms->params.log, "%s", error.text);
-		presenter->impl->release(presenter, image);
-		return -ENOTSUP;
-	}
-	place_in_gl(kms, picture, width, height, image);
-	return 0;
-}
-
-/* Before anybody else can acquire it. */
-static void keep_holds(struct kms *kms, const struct presenter_image *image)
-{
-	struct kms_picture *picture = &kms->pictures[image->index];
-	if (image->texture)
-		picture->gl_holds = image->holds;
-	else
-		picture->holds = image->holds;
-}
+/* ---- queueing ---- */
 
 static void kms_release(struct presenter *presenter, const struct presenter_image *image)
 {
-	struct kms *kms = self_of(presenter);
-	keep_holds(kms, image);
-	pthread_mutex_lock(&kms->lock);
-	flips_release(&kms->scanout.flips, image->index);
-	pthread_mutex_unlock(&kms->lock);
+	struct kms *kms = kms_of(presenter);
+	kms_take_back(kms, image);
+	kms_give_back(kms, image->index);
 }
 
 /* The kernel has no picture for this vblank yet and can still take one. */
@@ -365,10 +182,10 @@ static bool is_open(const struct kms *kms, uint64_t vblank, uint64_t now_ns)
 static int kms_present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank,
 					   uint64_t group, uint64_t serial)
 {
-	struct kms *kms = self_of(presenter);
+	struct kms *kms = kms_of(presenter);
 	int result = -ETIME;
 
-	keep_holds(kms, image);
+	kms_take_back(kms, image);
 	pthread_mutex_lock(&kms->lock);
 	if (!kms->running && !kms->lost && clock_now(kms->params.clock) < grid_time(&kms->grid, vblank))
 		kms_start(kms, vblank);
@@ -387,8 +204,8 @@ static int kms_present(struct presenter *presenter, const struct presenter_image
 static void kms_set_standby(struct presenter *presenter, const struct presenter_image *image, uint64_t group,
 							uint64_t serial)
 {
-	struct kms *kms = self_of(presenter);
-	keep_holds(kms, image);
+	struct kms *kms = kms_of(presenter);
+	kms_take_back(kms, image);
 	pthread_mutex_lock(&kms->lock);
 	flips_set_standby(&kms->scanout.flips, image->index, group, serial);
 	pthread_mutex_unlock(&kms->lock);
@@ -396,7 +213,7 @@ static void kms_set_standby(struct presenter *presenter, const struct presenter_
 
 static void kms_clear_standby(struct presenter *presenter)
 {
-	struct kms *kms = self_of(presenter);
+	struct kms *kms = kms_of(presenter);
 	pthread_mutex_lock(&kms->lock);
 	flips_clear_standby(&kms->scanout.flips);
 	pthread_mutex_unlock(&kms->lock);
@@ -404,7 +221,7 @@ static void kms_clear_standby(struct presenter *presenter)
 
 static void kms_pause(struct presenter *presenter)
 {
-	struct kms *kms = self_of(presenter);
+	struct kms *kms = kms_of(presenter);
 	pthread_mutex_lock(&kms->lock);
 	kms->running = false;
 	pthread_mutex_unlock(&kms->lock);
@@ -412,7 +229,7 @@ static void kms_pause(struct presenter *presenter)
 
 static struct grid kms_get_grid(struct presenter *presenter)
 {
-	struct kms *kms = self_of(presenter);
+	struct kms *kms = kms_of(presenter);
 	pthread_mutex_lock(&kms->lock);
 	const struct grid grid = kms->grid;
 	pthread_mutex_unlock(&kms->lock);
@@ -421,12 +238,12 @@ static struct grid kms_get_grid(struct presenter *presenter)
 
 static const char *kms_get_display(struct presenter *presenter)
 {
-	return self_of(presenter)->display;
+	return kms_of(presenter)->display;
 }
 
 static uint64_t kms_get_lead(struct presenter *presenter)
 {
-	struct kms *kms = self_of(presenter);
+	struct kms *kms = kms_of(presenter);
 	pthread_mutex_lock(&kms->lock);
 	const uint64_t lead_ns = kms->away ? 0 : kms->guard_ns;
 	pthread_mutex_unlock(&kms->lock);

@@ -3,8 +3,9 @@
 
 /*
  * The insides of the KMS presenter: a display controller of its own, without
- * any compositor. kms.c is the presenter's face, on the render thread;
- * kms_events.c is the thread that waits for the kernel.
+ * any compositor. kms.c is the presenter's face, on the render thread,
+ * kms_pictures.c the memory of its pictures; kms_events.c is the thread that
+ * waits for the kernel.
  *
  * The way of a picture: it is drawn straight into a buffer that the controller
  * can scan out, queued, and given to the kernel `guard_ns` before its vblank:
@@ -21,6 +22,7 @@
 
 #include <pthread.h>
 
+#include "daemon/present/canvas.h"
 #include "daemon/present/kms_cable.h"
 #include "daemon/present/kms_console.h"
 #include "daemon/present/kms_device.h"
@@ -31,15 +33,17 @@
 
 #define KMS_REPORTS 16u
 
-/* It has memory for the CPU and for GL, as soon as each is asked for; it was drawn into one of them. */
+/* Memory of one kind, the CPU's or GL's, that the controller scans out. */
+struct kms_surface {
+	struct kms_buffer buffer;
+	struct canvas canvas;
+};
+
+/* It has both kinds, as soon as each is asked for. */
 struct kms_picture {
-	struct kms_buffer buffer, gl_buffer;
-	struct kms_gl_buffer gl;
-	uint32_t gl_width, gl_height; /* as width and height, of that in GL */
-	uint64_t gl_holds;
-	bool in_gl;
-	uint32_t width, height; /* of what was drawn into it; the rest is black */
-	uint64_t holds;         /* as struct presenter_image says; 0 while it is acquired */
+	struct kms_surface memory, in_gl;
+	struct kms_gl_buffer gl_buffer; /* of in_gl */
+	struct kms_surface *shown;      /* which of them it was drawn into */
 };
 
 struct kms {
@@ -76,11 +80,22 @@ struct kms {
 	bool asks; /* for the vblank after the one that was heard */
 };
 
-/* What the controller is to show for it. */
-static inline const struct kms_buffer *kms_buffer_of(const struct kms_picture *picture)
+static inline struct kms *kms_of(struct presenter *presenter)
 {
-	return picture->in_gl ? &picture->gl_buffer : &picture->buffer;
+	return (struct kms *)presenter;
 }
+
+/* kms_pictures.c; as in struct presenter_impl. */
+int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
+int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
+const struct presenter_context *kms_get_context(struct presenter *presenter);
+
+/* The image's memory is its user's no more; before anybody else can acquire it. */
+void kms_take_back(struct kms *kms, const struct presenter_image *image);
+/* An acquired picture is free again. */
+void kms_give_back(struct kms *kms, uint32_t index);
+/* On main, at the end. */
+void kms_destroy_picture(struct kms *kms, struct kms_picture *picture);
 
 /* All with the lock. */
 

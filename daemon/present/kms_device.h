@@ -2,9 +2,10 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * One display of one display controller: the only file that speaks to the
- * kernel's mode-setting interface (libdrm). Finds device, connector and mode,
- * becomes master, sets the mode, flips buffers and reads the kernel's events.
+ * One display of one display controller: the only face of the kernel's
+ * mode-setting interface (libdrm). Finds device, connector and mode (kms_find.c),
+ * becomes master, sets the mode, flips buffers (kms_atomic.c, or the older calls)
+ * and reads the kernel's events.
  *
  * Atomic mode setting where the driver has it (a mode is tried with a test that
  * changes nothing, before it is set), the older calls elsewhere.

@@ -75,7 +75,7 @@ void kms_choose(struct kms *kms, uint64_t vblank)
 	kms->chosen = vblank;
 	if (image < 0)
 		return;
-	const int result = kms_device_flip(kms->device, kms_buffer_of(&kms->pictures[image]));
+	const int result = kms_device_flip(kms->device, &kms->pictures[image].shown->buffer);
 	if (result == 0)
 		return;
 	scanout_failed(&kms->scanout);
@@ -148,7 +148,7 @@ static int light_up_again(struct kms *kms, struct error *error)
 {
 	const struct scanout *scanout = &kms->scanout;
 	const struct kms_buffer *buffer =
-		scanout->shown.any ? kms_buffer_of(&kms->pictures[scanout->shown.image]) : &kms->backdrop;
+		scanout->shown.any ? &kms->pictures[scanout->shown.image].shown->buffer : &kms->backdrop;
 	pthread_mutex_unlock(&kms->lock);
 	int result = kms_device_return(kms->device);
 	if (result < 0)

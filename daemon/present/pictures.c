@@ -96,77 +96,81 @@ uint64_t pictures_get_lead(struct presenter *presenter)
 	return lead_ns;
 }
 
-/* A free one; -1: there is none. */
-static int acquire_index(struct pictures *pictures)
+/* A free one; NULL: there is none. */
+static struct pictures_memory *acquire_any(struct pictures *pictures, struct presenter_image *image)
 {
 	pthread_mutex_lock(&pictures->lock);
 	const int index = flips_acquire(&pictures->flips);
 	pthread_mutex_unlock(&pictures->lock);
-	return index;
+	*image = (struct presenter_image){.index = index < 0 ? 0 : (uint32_t)index};
+	return index < 0 ? NULL : &pictures->memory[index];
+}
+
+static void give_back(struct pictures *pictures, const struct presenter_image *image)
+{
+	pthread_mutex_lock(&pictures->lock);
+	flips_release(&pictures->flips, image->index);
+	pthread_mutex_unlock(&pictures->lock);
+}
+
+/* there: the canvas has memory of that size. */
+static int lend(struct pictures *pictures, struct canvas *canvas, bool there, uint32_t width, uint32_t height,
+				struct presenter_image *image)
+{
+	if (!there) {
+		*canvas = (struct canvas){0, 0, 0};
+		give_back(pictures, image);
+		return -ENOMEM;
+	}
+	canvas_lend(canvas, width, height, image);
+	pictures->shapes[image->index] = *image;
+	return 0;
+}
+
+static bool resize(struct pictures_memory *memory, size_t size)
+{
+	if (memory->size == size)
+		return true;
+	free(memory->data);
+	memory->data = aligned_alloc(64, size);
+	memory->size = memory->data ? size : 0;
+	return memory->data != NULL;
 }
 
 int pictures_acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
 {
 	struct pictures *pictures = pictures_of(presenter);
-	const size_t stride = ((size_t)width * 4 + 63) / 64 * 64, size = stride * height;
-	const int index = acquire_index(pictures);
-	if (index < 0)
+	struct pictures_memory *memory = acquire_any(pictures, image);
+	if (!memory)
 		return -EBUSY;
-	struct pictures_memory *memory = &pictures->memory[index];
-	const bool same = memory->size == size && memory->width == width && memory->height == height;
-	if (memory->size != size) {
-		free(memory->data);
-		memory->data = aligned_alloc(64, size);
-		memory->size = memory->data ? size : 0;
-	}
-	memory->width = width;
-	memory->height = height;
-	*image = (struct presenter_image){memory->data, stride, width, height, (uint32_t)index, 0, 0};
-	pictures->shapes[index] = *image;
-	image->holds = same ? memory->holds : 0;
-	memory->holds = 0;
-	if (memory->data)
-		return 0;
-	pictures_release(presenter, image);
-	return -ENOMEM;
+	image->stride = ((size_t)width * 4 + 63) / 64 * 64;
+	const bool there = resize(memory, image->stride * height);
+	image->data = memory->data;
+	return lend(pictures, &memory->in_memory, there, width, height, image);
 }
 
 int pictures_acquire_texture(struct pictures *pictures, const struct texture_functions *gl, uint32_t width,
 							 uint32_t height, struct presenter_image *image)
 {
-	const int index = acquire_index(pictures);
-	if (index < 0)
+	struct pictures_memory *memory = acquire_any(pictures, image);
+	if (!memory)
 		return -EBUSY;
-	struct pictures_memory *memory = &pictures->memory[index];
-	const bool same = memory->texture.width == width && memory->texture.height == height;
 	const bool there = texture_resize(&memory->texture, gl, width, height);
-	*image = (struct presenter_image){NULL, 0, width, height, (uint32_t)index, 0, memory->texture.name};
-	pictures->shapes[index] = *image;
-	image->holds = same ? memory->texture_holds : 0;
-	memory->texture_holds = 0;
-	if (there)
-		return 0;
-	pictures_release(&pictures->presenter, image);
-	return -ENOMEM;
+	image->texture = memory->texture.name;
+	return lend(pictures, &memory->in_gl, there, width, height, image);
 }
 
-/* Before anybody else can acquire it. */
-static void keep_holds(struct pictures *pictures, const struct presenter_image *image)
+static void take_back(struct pictures *pictures, const struct presenter_image *image)
 {
 	struct pictures_memory *memory = &pictures->memory[image->index];
-	if (image->data)
-		memory->holds = image->holds;
-	else
-		memory->texture_holds = image->holds;
+	canvas_take_back(image->data ? &memory->in_memory : &memory->in_gl, image);
 }
 
 void pictures_release(struct presenter *presenter, const struct presenter_image *image)
 {
 	struct pictures *pictures = pictures_of(presenter);
-	keep_holds(pictures, image);
-	pthread_mutex_lock(&pictures->lock);
-	flips_release(&pictures->flips, image->index);
-	pthread_mutex_unlock(&pictures->lock);
+	take_back(pictures, image);
+	give_back(pictures, image);
 }
 
 int pictures_present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
@@ -175,7 +179,7 @@ int pictures_present(struct presenter *presenter, const struct presenter_image *
 	struct pictures *pictures = pictures_of(presenter);
 	int result = -ETIME;
 
-	keep_holds(pictures, image);
+	take_back(pictures, image);
 	pthread_mutex_lock(&pictures->lock);
 	const uint64_t latest_ns = clock_now(pictures->params.clock) + pictures->lead_ns;
 	const bool in_time = latest_ns < grid_time(&pictures->grid, vblank);
@@ -194,7 +198,7 @@ void pictures_set_standby(struct presenter *presenter, const struct presenter_im
 						  uint64_t serial)
 {
 	struct pictures *pictures = pictures_of(presenter);
-	keep_holds(pictures, image);
+	take_back(pictures, image);
 	pthread_mutex_lock(&pictures->lock);
 	flips_set_standby(&pictures->flips, image->index, group, serial);
 	pthread_mutex_unlock(&pictures->lock);

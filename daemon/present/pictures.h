@@ -12,6 +12,7 @@
 
 #include <pthread.h>
 
+#include "daemon/present/canvas.h"
 #include "daemon/present/flips.h"
 #include "daemon/present/presenter.h"
 #include "daemon/present/texture.h"
@@ -32,10 +33,8 @@ struct pictures {
 	struct pictures_memory {
 		uint8_t *data;
 		size_t size;
-		uint32_t width, height;
-		uint64_t holds;         /* as struct presenter_image says; 0 while it is acquired */
 		struct texture texture; /* the same in GL, once it was asked for */
-		uint64_t texture_holds;
+		struct canvas in_memory, in_gl;
 	} memory[FLIPS_IMAGES];                      /* of an acquired picture: the render thread's; else as `shape` says */
 	struct presenter_image shapes[FLIPS_IMAGES]; /* as acquired last */
 };
