@@ -16,24 +16,52 @@
 #define QUIET_NS UINT64_C(100000000)
 #define LONGEST_NS UINT64_C(1000000000)
 
-#define CHANGES (IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_CREATE | IN_ONLYDIR)
+/* Of the folder itself: it is not where it was. */
+#define GONE (IN_DELETE_SELF | IN_MOVE_SELF | IN_UNMOUNT | IN_IGNORED)
+#define CHANGES \
+	(IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_CREATE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR)
 
 /* ---- places ---- */
 
+/* Cuts `path` to the folder that holds its last name, which it gives. "a", "a/": "./"; "/a": "/". */
+static void split(char *path, char *folder, char *name)
+{
+	size_t length = strlen(path);
+	while (length > 1 && path[length - 1] == '/')
+		path[--length] = 0;
+	const char *slash = strrchr(path, '/');
+	snprintf(name, NAME_MAX + 1, "%s", slash ? slash + 1 : path);
+	snprintf(folder, PATH_MAX, "%.*s", slash ? (int)(slash - path) + 1 : 2, slash ? path : "./");
+}
+
+static void set_timer(struct reload *reload);
+
+/* Where the folder is missing, the nearest one above it is watched for it to come. */
+static void watch_place(struct reload *reload, struct reload_place *place, const char *file)
+{
+	char path[PATH_MAX], folder[PATH_MAX];
+	struct stat found;
+	bool missing = false;
+	snprintf(path, sizeof(path), "%s", file);
+	for (;; missing = true) {
+		split(path, folder, place->name);
+		place->watch = inotify_add_watch(reload->watch_fd, folder, CHANGES);
+		const bool top = strcmp(folder, "./") == 0 || strcmp(folder, "/") == 0;
+		if (place->watch >= 0 || top || (errno != ENOENT && errno != ENOTDIR))
+			break;
+		snprintf(path, sizeof(path), "%s", folder);
+	}
+	if (place->watch < 0)
+		log_warning(reload->log, "%s: changes are not noticed (%s); SIGHUP has it read again", file, strerror(errno));
+	else if (missing && stat(path, &found) == 0 && S_ISDIR(found.st_mode))
+		set_timer(reload); /* it came before the one above was watched */
+}
+
 static void add_place(struct reload *reload, const char *path)
 {
-	char folder[PATH_MAX];
 	const char *slash = strrchr(path, '/');
-	const char *name = slash ? slash + 1 : path;
-	const int length = slash ? (int)(slash - path) + 1 : 2;
-	if (reload->place_count == RELOAD_PLACES || strlen(name) > NAME_MAX || length >= PATH_MAX)
-		return;
-	snprintf(folder, sizeof(folder), "%.*s", length, slash ? path : "./");
-	struct reload_place *place = &reload->places[reload->place_count++];
-	snprintf(place->name, sizeof(place->name), "%s", name);
-	place->watch = inotify_add_watch(reload->watch_fd, folder, CHANGES);
-	if (place->watch < 0)
-		log_warning(reload->log, "%s: changes are not noticed (%s); SIGHUP has it read again", path, strerror(errno));
+	if (reload->place_count < RELOAD_PLACES && strlen(slash ? slash + 1 : path) <= NAME_MAX && strlen(path) < PATH_MAX)
+		watch_place(reload, &reload->places[reload->place_count++], path);
 }
 
 static bool is_watched(const struct reload *reload, int watch)
@@ -64,11 +92,11 @@ static void watch_files(struct reload *reload)
 			inotify_rm_watch(reload->watch_fd, before[i]);
 }
 
-/* A file that was just made is still being written; a link is whole at once. */
+/* A file that was just made is still being written; a link and a folder are whole at once. */
 static bool is_whole(const struct reload *reload, const struct inotify_event *event)
 {
 	struct stat file;
-	if (!(event->mask & IN_CREATE))
+	if (!(event->mask & IN_CREATE) || event->mask & IN_ISDIR)
 		return true;
 	for (unsigned i = 0; i < reload->file_count; i++)
 		if (lstat(reload->files[i], &file) == 0 && (S_ISLNK(file.st_mode) || file.st_nlink > 1))
@@ -80,9 +108,14 @@ static bool concerns_us(const struct reload *reload, const struct inotify_event 
 {
 	if (event->mask & IN_Q_OVERFLOW)
 		return true;
-	for (unsigned i = 0; i < reload->place_count && event->len > 0; i++)
-		if (reload->places[i].watch == event->wd && strcmp(reload->places[i].name, event->name) == 0)
+	for (unsigned i = 0; i < reload->place_count; i++) {
+		if (reload->places[i].watch != event->wd)
+			continue;
+		if (event->mask & GONE)
+			return true;
+		if (event->len > 0 && strcmp(reload->places[i].name, event->name) == 0)
 			return is_whole(reload, event);
+	}
 	return false;
 }
 

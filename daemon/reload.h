@@ -6,8 +6,8 @@
  * changed, for SIGHUP, and on request. With a mistake in them all stays as it
  * is, and the log says where the mistake is. The folders of the files are
  * watched, so that a file may be written in place, be replaced, be taken away
- * and come back; a burst of changes counts as one. A file that is still being
- * written is not read. On main; frames do not notice.
+ * and come back, its folders too; a burst of changes counts as one. A file that
+ * is still being written is not read. On main; frames do not notice.
  */
 #ifndef PURSUIT_RELOAD_H
 #define PURSUIT_RELOAD_H
@@ -24,8 +24,8 @@
 #define RELOAD_PLACES (2u * ARGUMENTS_FILES)
 
 struct reload_place {
-	char name[NAME_MAX + 1]; /* of the file in its folder */
-	int watch;               /* of inotify; negative: there is no such folder */
+	char name[NAME_MAX + 1]; /* in the folder that is watched: of the file, or of the missing folder above it */
+	int watch;               /* of inotify; negative: the kernel gives none */
 };
 
 struct reload {

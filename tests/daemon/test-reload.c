@@ -7,6 +7,7 @@
  * told with its line and changes nothing, and no frame is lost.
  */
 
+#include <fcntl.h>
 #include <jansson.h>
 #include <signal.h>
 #include <string.h>
@@ -215,6 +216,15 @@ static json_int_t figure(const char *name)
 	return value;
 }
 
+static bool cell_becomes(int cell)
+{
+	char line[32];
+	snprintf(line, sizeof(line), "\ncell = %d\n", cell);
+	for (int i = 0; i < 500 && !setting_is(line); i++)
+		sleep_ms(20);
+	return setting_is(line);
+}
+
 /* A file that need not be there, and comes later. */
 static void test_missing(void)
 {
@@ -227,9 +237,49 @@ static void test_missing(void)
 	fd = raw_greet(fixture.socket);
 	CHECK(setting_is("\ncell = 8\n"));
 	write_file(other, "cell = 33\n");
-	for (int i = 0; i < 500 && !setting_is("\ncell = 33\n"); i++)
-		sleep_ms(20);
-	CHECK(setting_is("\ncell = 33\n"));
+	CHECK(cell_becomes(33));
+	close(fd);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
+/* Its folders taken away and made again, one by one; moved away and back; another put in their place. */
+static void test_folders(void)
+{
+	char outer[128], inner[160], file[192], aside[160], aside_file[192], minus[200];
+	const char *const arguments[] = {"--config", minus, NULL};
+	snprintf(outer, sizeof(outer), "%s/outer", fixture.folder);
+	snprintf(inner, sizeof(inner), "%s/inner", outer);
+	snprintf(file, sizeof(file), "%s/file", inner);
+	snprintf(aside, sizeof(aside), "%s/aside", fixture.folder);
+	snprintf(aside_file, sizeof(aside_file), "%s/file", aside);
+	snprintf(minus, sizeof(minus), "-%s", file);
+	CHECK(mkdir(outer, 0700) == 0 && mkdir(inner, 0700) == 0);
+	write_file(file, "cell = 20\n");
+	fixture_start(&fixture, arguments);
+	fd = raw_greet(fixture.socket);
+	CHECK(cell_becomes(20));
+
+	CHECK(unlink(file) == 0 && rmdir(inner) == 0 && rmdir(outer) == 0);
+	CHECK(cell_becomes(8));
+	sleep_ms(400);
+	CHECK(mkdir(outer, 0700) == 0);
+	sleep_ms(400);
+	CHECK(mkdir(inner, 0700) == 0);
+	sleep_ms(400);
+	write_file(file, "cell = 30\n");
+	CHECK(cell_becomes(30));
+
+	CHECK(rename(inner, aside) == 0);
+	CHECK(cell_becomes(8));
+	CHECK(rename(aside, inner) == 0);
+	CHECK(cell_becomes(30));
+
+	CHECK(mkdir(aside, 0700) == 0);
+	write_file(aside_file, "cell = 31\n");
+	CHECK(renameat2(AT_FDCWD, aside, AT_FDCWD, inner, RENAME_EXCHANGE) == 0);
+	CHECK(cell_becomes(31));
+	write_file(file, "cell = 32\n");
+	CHECK(cell_becomes(32));
 	close(fd);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }
@@ -268,6 +318,7 @@ int main(int argc, char **argv)
 	close(fd);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 	RUN(test_missing);
+	RUN(test_folders);
 	fixture_finish(&fixture);
 	return test_result();
 }
