@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 # SPDX-FileCopyrightText: 2026 The Pursuit authors
-"""Puts the scenes' GLSL into a C header, and checks it with glslangValidator when there is one.
+"""Puts the scenes' GLSL into a C header, or checks a part of it as each context gets it.
 
-usage: embed_shaders.py OUT.h VALIDATOR-or-empty NAME=FILE[:DEFINE] ...
+usage: embed_shaders.py OUT.h NAME=FILE[:DEFINE] ...
+       embed_shaders.py --check VALIDATOR FILE[:DEFINE]   as GL 3.3, GL 4.3 and GLES 3.1
 
-Lines `#include "file"` are replaced by that file. Each program part is checked
-as GL 3.3, GL 4.3 and GLES 3.1, as it is compiled at run time.
+Lines `#include "file"` are replaced by that file.
 """
 import os
 import re
@@ -39,23 +39,28 @@ def validate(validator, path, source):
             sys.exit(f"{path} as {version}:\n{run.stdout}")
 
 
+def read_part(part):
+    """The path and the whole text of FILE[:DEFINE]."""
+    path, _, define = part.partition(":")
+    return path, (f"#define {define}\n" if define else "") + expand(path)
+
+
 def literal(line):
     return '"' + line.replace("\\", "\\\\").replace('"', '\\"') + '\\n"'
 
 
-def main():
-    out, validator, parts = sys.argv[1], sys.argv[2], sys.argv[3:]
+def write(out, parts):
     lines = ["/* Made by embed_shaders.py; do not edit. */"]
     for part in parts:
-        name, path = part.split("=", 1)
-        path, _, define = path.partition(":")
-        source = (f"#define {define}\n" if define else "") + expand(path)
-        if validator:
-            validate(validator, path, source)
+        name, part = part.split("=", 1)
+        _, source = read_part(part)
         body = "\n\t".join(literal(line.rstrip()) for line in source.split("\n") if line.strip())
         lines.append(f"static const char scene_shader_{name}[] =\n\t{body};")
     with open(out, "w", encoding="utf-8") as file:
         file.write("\n".join(lines) + "\n")
 
 
-main()
+if sys.argv[1] == "--check":
+    validate(sys.argv[2], *read_part(sys.argv[3]))
+else:
+    write(sys.argv[1], sys.argv[2:])
