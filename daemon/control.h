@@ -12,8 +12,8 @@
  *                           ask again from first + number of rows
  *   latency [FROM [COUNT]]  settled rows of the lab, as lab_rows_json() has them;
  *                           refused where no option of the lab is set
- *   record                  with one fd, a regular file open for writing: records
- *                           the frames received from now on
+ *   record                  with one fd, a regular file open for writing, which it
+ *                           replaces: records the frames received from now on
  *   record-stop             ends the recording; answered when it is on disk:
  *                           {frames, dropped, bytes, error}
  *   set NAME=VALUE ...      settings by name, all or none of them (live.h); those of

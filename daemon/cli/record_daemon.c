@@ -56,7 +56,8 @@ int record_daemon(const char *path, const char *socket, double seconds, json_t *
 	if (control_open(&control, socket, &error) < 0)
 		return args_failed(VERB, "%s. A scene needs none: pursuit record %s --scene colonnade", error.text, path);
 	*written = NULL;
-	int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), result;
+	/* What it holds is the daemon's to cut off, should it say yes. */
+	int fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666), result;
 	if (fd < 0) {
 		result = error_set(&error, -errno, "%s: %s", path, strerror(errno));
 	} else {

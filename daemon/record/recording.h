@@ -29,9 +29,10 @@ struct recording_writer_params {
 };
 
 /*
- * Creates the file and writes header and INFO. A file size limit (RLIMIT_FSIZE)
- * is met like a full disk if the program ignores or blocks SIGXFSZ. NULL with a sentence
- * (disk full, permission, ...).
+ * Creates the file and writes header and INFO; what a file holds already, from where it stands on, is cut off.
+ * The file is locked (flock) until it is closed: one that another writer is at is left as it is. A file size limit
+ * (RLIMIT_FSIZE) is met like a full disk if the program ignores or blocks SIGXFSZ. NULL with a sentence (disk full,
+ * permission, another writer, ...).
  */
 struct recording_writer *recording_writer_create(const struct recording_writer_params *params, struct error *error);
 

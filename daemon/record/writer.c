@@ -6,7 +6,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/uio.h>
+#include <sys/file.h>
 #include <time.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -160,6 +160,18 @@ static void writer_free(struct recording_writer *writer)
 	free(writer);
 }
 
+/* What another writer is at stays whole. Pipes and devices can be neither locked nor cut. */
+static int take_file(struct recording_writer *writer, struct error *error)
+{
+	const off_t start = lseek(writer->fd, 0, SEEK_CUR);
+	writer->start = start > 0 ? start : 0;
+	if (flock(writer->fd, LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK)
+		return error_set(error, -EBUSY, "%s: another program is recording into it", writer->path);
+	if (ftruncate(writer->fd, writer->start) < 0 && errno != EINVAL)
+		return write_error(writer, -errno, error);
+	return 0;
+}
+
 static int writer_open(struct recording_writer *writer, const struct recording_writer_params *params,
 					   struct error *error)
 {
@@ -171,13 +183,11 @@ static int writer_open(struct recording_writer *writer, const struct recording_w
 	if (writer->fd < 0 && !params->path)
 		return error_set(error, -EINVAL, "recording: path is not set, must name a file");
 	if (writer->fd < 0)
-		writer->fd = open(params->path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+		writer->fd = open(params->path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
 	if (writer->fd < 0)
 		return error_set(error, -errno, "%s: cannot be created: %s%s", writer->path, strerror(errno),
 						 errno_advice(-errno));
-	const off_t start = lseek(writer->fd, 0, SEEK_CUR);
-	writer->start = start > 0 ? start : 0;
-	return 0;
+	return take_file(writer, error);
 }
 
 struct recording_writer *recording_writer_create(const struct recording_writer_params *params, struct error *error)

@@ -113,6 +113,20 @@ class Demo(common.Case):
         self.assertEqual(result.returncode, 1)
         self.assertIn("no/where", result.stderr)
 
+    def record_twice(self, socket):
+        """Who is told that a recording runs has not cut off what it holds."""
+        arguments = ["record", self.path("twice.pursuit"), "--seconds", "600", "--socket", socket]
+        first = subprocess.Popen([common.PURSUIT, *arguments], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        for _ in range(600):
+            if json.loads(self.must("status", "--json", "--socket", socket).stdout).get("recording", {}).get("frames", 0) > 2:
+                break
+            time.sleep(0.1)
+        self.assertIn("already", self.must(*arguments, status=1).stderr)
+        first.send_signal(signal.SIGINT)
+        first.communicate(timeout=120)
+        self.assertEqual(first.returncode, 0)
+        self.assertGreater(self.figures("replay", self.path("twice.pursuit"), "--method", "hold")["real_frames"], 2)
+
     def test_record_and_status_of_a_running_daemon(self):
         demo = self.start("--seconds", "600")
         socket = next(name for name in os.listdir(self.folder) if name.startswith("pursuit-"))
@@ -123,6 +137,7 @@ class Demo(common.Case):
             status = json.loads(self.must("status", "--json", "--socket", socket).stdout)
             self.assertGreater(status["real_frames"], 0)
             self.assertIn("displayed_hz", self.must("status", "--socket", socket).stdout)
+            self.record_twice(socket)
         finally:
             demo.send_signal(signal.SIGINT)
             demo.communicate(timeout=120)

@@ -488,6 +488,41 @@ static void test_cannot_create(void)
 	CHECK(strstr(error.text, "no-such-folder") && strstr(error.text, "make the folder first"));
 }
 
+/* What another writer is at is left as it is, and what was there before is gone when one begins. */
+static void test_one_writer_a_file(void)
+{
+	struct error error = {""};
+	const struct recording_writer_params params = {.path = sample_path("one.pursuit")};
+	write_samples(params.path, 0);
+	struct recording_writer *first = recording_writer_create(&params, &error);
+	CHECK(first != NULL);
+	CHECK_INT(recording_writer_frame(first, &samples[0].frame, 1, &error), 0);
+	CHECK(!recording_writer_create(&params, &error));
+	CHECK(strstr(error.text, "one.pursuit") && strstr(error.text, "another program"));
+	CHECK_INT(recording_writer_frame(first, &samples[1].frame, 2, &error), 0);
+	CHECK_INT(recording_writer_close(&first, &error), 0);
+	struct recording_reader *reader = open_reader(params.path, 0, &error);
+	CHECK(reader != NULL);
+	CHECK_INT(play(reader, true), 2);
+	CHECK_STRING(recording_reader_summary(reader)->damage, "");
+	recording_reader_destroy(&reader);
+}
+
+/* A file that the caller has opened, longer than what is written into it. */
+static void test_open_file_is_replaced(void)
+{
+	struct error error = {""};
+	write_samples(sample_path("given.pursuit"), 0);
+	const struct recording_writer_params params = {.fd = open(sample_path("given.pursuit"), O_WRONLY | O_CLOEXEC)};
+	struct recording_writer *writer = recording_writer_create(&params, &error);
+	CHECK_INT(recording_writer_frame(writer, &samples[2].frame, 1, &error), 0);
+	CHECK_INT(recording_writer_close(&writer, &error), 0);
+	struct recording_reader *reader = open_reader(sample_path("given.pursuit"), 0, &error);
+	CHECK_INT(play(reader, true), 1);
+	CHECK_STRING(recording_reader_summary(reader)->damage, "");
+	recording_reader_destroy(&reader);
+}
+
 int main(void)
 {
 	for (unsigned i = 0; i < FRAMES; i++)
@@ -505,6 +540,8 @@ int main(void)
 	RUN(test_full_disk);
 	RUN(test_disk_fills_up);
 	RUN(test_cannot_create);
+	RUN(test_one_writer_a_file);
+	RUN(test_open_file_is_replaced);
 	for (unsigned i = 0; i < FRAMES; i++)
 		sample_finish(&samples[i]);
 	sample_folder_remove();
