@@ -1,11 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
+#include <string.h>
+
 #include "daemon/lab/state.h"
 
 #define READ_MOST 16
 /* Flip events may come so much later than the edges that they cause. */
 #define HOLD_NS UINT64_C(40000000)
+/* An edge is read so much later than it was, at most. */
+#define TRIGGER_HOLD_NS UINT64_C(10000000)
 
 static struct lines input(const struct lab *lab, const char *line, const char *option, bool active_low)
 {
@@ -28,6 +32,7 @@ void inputs_init(struct lab *lab)
 	lab->vsync_lines = input(lab, settings->vsync_line, "vsync-line", false);
 	lab->match.least_ns = (uint64_t)settings->photon_least_us * 1000;
 	lab->match.debounce_ns = (uint64_t)settings->debounce_us * 1000;
+	lab->rows.hold_ns = lab->trigger.wanted ? TRIGGER_HOLD_NS : 0;
 }
 
 /* An alternating patch tells two neighbours apart by direction; without a patch any edge may be any flip's. */
@@ -42,10 +47,8 @@ static uint64_t window_end(const struct lab *lab)
 void inputs_flip(struct lab *lab, struct row *row, bool changed)
 {
 	enum match_want want = MATCH_EITHER;
-	if (lab->trigger_ns != 0 && lab->trigger_ns <= row->points.time[POINT_FLIP]) {
-		row->points.time[POINT_TRIGGER] = lab->trigger_ns;
-		lab->trigger_ns = 0;
-	}
+	/* Edges that are older are read before the row goes, whatever the last poll said. */
+	lab->trigger.readable = true;
 	if (!lab->photodiode.chip)
 		return;
 	if (lab->settings->patch != LAB_PATCH_OFF)
@@ -61,11 +64,25 @@ static void take_photon(struct lab *lab, const struct chip_edge *edge)
 	match_add_edge(&lab->match, edge->time_ns, edge->rising);
 }
 
-/* The leading edge is the trigger; an input says which by active-low. */
+/* The leading edge is the trigger; an input says which by active-low. Of too many that wait the oldest goes. */
 static void take_trigger(struct lab *lab, const struct chip_edge *edge)
 {
-	lab->triggers += edge->rising;
-	lab->trigger_ns = edge->rising ? edge->time_ns : lab->trigger_ns;
+	if (!edge->rising)
+		return;
+	lab->triggers++;
+	if (lab->trigger_count == LAB_TRIGGERS)
+		memmove(&lab->trigger_ns[0], &lab->trigger_ns[1], --lab->trigger_count * sizeof(lab->trigger_ns[0]));
+	lab->trigger_ns[lab->trigger_count++] = edge->time_ns;
+}
+
+/* To their flips, as far as these have come. */
+static void give_triggers(struct lab *lab)
+{
+	uint32_t left = 0;
+	for (uint32_t i = 0; i < lab->trigger_count; i++)
+		if (!rows_trigger(&lab->rows, lab->trigger_ns[i]))
+			lab->trigger_ns[left++] = lab->trigger_ns[i];
+	lab->trigger_count = left;
 }
 
 static void take_vsync(struct lab *lab, const struct chip_edge *edge)
@@ -120,6 +137,7 @@ void inputs_work(struct lab *lab, uint64_t now_ns)
 	read_line(lab, &lab->vsync_lines, now_ns, take_vsync);
 	read_line(lab, &lab->photodiode, now_ns, take_photon);
 	read_line(lab, &lab->trigger, now_ns, take_trigger);
+	give_triggers(lab);
 	check_vsync(lab, now_ns);
 	settle(lab, now_ns);
 	for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++) {

@@ -31,7 +31,7 @@ static const struct {
 	 "how flip_ns is known: kernel, display server, external vsync (the fitted vblank), timer (no display), estimated"},
 	{"late", "1: the flip was handled only after the next vblank's time"},
 	{"skipped", "refreshes just before this one that nobody handled"},
-	{"edge_lost", "1: an edge was wanted and no line was there"},
+	{"edge_lost", "1: an edge was wanted and no line was there, or it was up still from the pulse before"},
 	{"photon_lost", "1: the patch changed and no edge of the photodiode came in its window"},
 };
 

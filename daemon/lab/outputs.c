@@ -109,15 +109,17 @@ static void note_edge(struct lab *lab, uint64_t vblank, uint64_t before_ns, uint
 static uint64_t apply(struct lab *lab, const struct pattern_change *change)
 {
 	const uint64_t before_ns = clock_now(lab->params.clock);
+	/* A pulse that begins while the one before lasts is none on the wire. */
+	const bool turns = ((lab->levels ^ change->levels) & change->mask) == change->mask;
 	lab->levels = (lab->levels & ~change->mask) | change->levels;
 	const int result = lab->marker.chip ? chip_set(lab->marker.chip, lab->levels) : -1;
 	const uint64_t after_ns = clock_now(lab->params.clock);
 	if (lab->marker.chip && result < 0)
 		lines_lose(&lab->marker, result, after_ns);
-	const bool marks = change->vblank != UINT64_MAX;
+	const bool marks = change->vblank != UINT64_MAX, is_edge = result == 0 && turns;
 	if (marks)
-		note_edge(lab, change->vblank, before_ns, result == 0 ? after_ns : 0);
-	lab->edges += marks && result == 0;
+		note_edge(lab, change->vblank, before_ns, is_edge ? after_ns : 0);
+	lab->edges += marks && is_edge;
 	lab->late_changes += marks && before_ns > change->time_ns + LATE_NS;
 	if (change->pulse_ns) {
 		/* From when it really was set: a pulse is never shortened by a late start. */

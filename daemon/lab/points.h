@@ -21,7 +21,7 @@ enum point {
 	POINT_EVENT,      /* the presenter's event reached the lab */
 	POINT_EDGE,       /* the call that set the line for it came back */
 	POINT_PHOTON,     /* the photodiode saw it */
-	POINT_TRIGGER,    /* the newest edge of the trigger input, if one came since the flip before */
+	POINT_TRIGGER,    /* the newest edge of the trigger input, if one came since the flip before; by its stamp */
 	POINT_COUNT,
 };
 
@@ -54,7 +54,7 @@ struct points {
 	uint8_t source;   /* enum presenter_time_source */
 	bool late;        /* the flip was handled only after the next vblank's time */
 	bool level;       /* of the photodiode patch on display */
-	bool edge_lost;   /* the pattern wanted an edge and no line was there to set */
+	bool edge_lost;   /* the pattern wanted an edge; no line was there, or it was up still from the pulse before */
 	bool photon_lost; /* light was expected to change, and no input saw it */
 	char method[16];  /* that made the picture */
 };

@@ -42,10 +42,30 @@ void rows_tell(struct rows *rows, const struct points *points)
 		row->points.time[told[i]] = points->time[told[i]];
 }
 
+bool rows_trigger(struct rows *rows, uint64_t time_ns)
+{
+	uint64_t at = rows->end;
+	if (time_ns <= rows->taken_flip_ns)
+		return true;
+	while (at > rows->first && rows->rows[(at - 1) % ROWS].points.time[POINT_FLIP] >= time_ns)
+		at--;
+	if (at == rows->end)
+		return false;
+	rows->rows[at % ROWS].points.time[POINT_TRIGGER] = time_ns;
+	return true;
+}
+
+static bool is_complete(const struct row *row)
+{
+	return row->told && !row->edge_open && !row->photon_open;
+}
+
 uint64_t rows_next(const struct rows *rows)
 {
-	return rows->first == rows->end ? UINT64_MAX
-									: rows->rows[rows->first % ROWS].points.time[POINT_EVENT] + ROWS_WAIT_NS;
+	const struct row *row = &rows->rows[rows->first % ROWS];
+	if (rows->first == rows->end)
+		return UINT64_MAX;
+	return row->points.time[POINT_EVENT] + (is_complete(row) ? rows->hold_ns : ROWS_WAIT_NS);
 }
 
 bool rows_take(struct rows *rows, uint64_t now_ns, bool force, struct points *points)
@@ -53,10 +73,11 @@ bool rows_take(struct rows *rows, uint64_t now_ns, bool force, struct points *po
 	const struct row *row = &rows->rows[rows->first % ROWS];
 	if (rows->first == rows->end)
 		return false;
-	const bool complete = row->told && !row->edge_open && !row->photon_open;
-	if (!complete && !force && now_ns < rows_next(rows))
+	const bool at_once = is_complete(row) && rows->hold_ns == 0;
+	if (!force && !at_once && now_ns < rows_next(rows))
 		return false;
 	*points = row->points;
+	rows->taken_flip_ns = row->points.time[POINT_FLIP];
 	points->edge_lost |= row->edge_open;
 	points->photon_lost |= row->photon_open;
 	for (uint32_t i = 0; i < POINT_COUNT; i++)

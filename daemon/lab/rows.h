@@ -28,7 +28,9 @@ struct row {
 /* Zeroed is empty. */
 struct rows {
 	struct row rows[ROWS];
-	uint64_t first, end; /* rows[i % ROWS] for first <= i < end */
+	uint64_t first, end;    /* rows[i % ROWS] for first <= i < end */
+	uint64_t taken_flip_ns; /* of the row taken last */
+	uint64_t hold_ns;       /* complete rows wait so long after their event for edges that are older; set by the user */
 };
 
 /* A new row, of a flip; the oldest one must have been taken if ROWS are open. */
@@ -38,10 +40,15 @@ bool rows_full(const struct rows *rows);
 struct row *rows_find(struct rows *rows, uint64_t vblank);
 /* The render thread's part: frame, picture, their time points. */
 void rows_tell(struct rows *rows, const struct points *points);
+/*
+ * An edge of the trigger input goes with the first flip that is not before it; of several the newest stays. False: that
+ * flip is still to come. An edge whose flip's row was taken already is nobody's: it is not the next flip's.
+ */
+bool rows_trigger(struct rows *rows, uint64_t time_ns);
 /* Takes the oldest row if it is complete, too old, or `force`d. What is still open becomes unknown, and is noted as
  * lost. */
 bool rows_take(struct rows *rows, uint64_t now_ns, bool force, struct points *points);
-/* When the oldest gets too old; UINT64_MAX for none. */
+/* When the oldest has waited long enough; UINT64_MAX for none. May be over. */
 uint64_t rows_next(const struct rows *rows);
 
 #endif

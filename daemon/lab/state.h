@@ -21,6 +21,7 @@
 
 #define LAB_PICTURES 64u
 #define LAB_RING 4096u
+#define LAB_TRIGGERS 32u
 #define LAB_NEVER UINT64_MAX
 
 /* What other threads may read, under a lock that hands priority down. Filled as rows settle. */
@@ -58,11 +59,14 @@ struct lab {
 	struct strobe strobe;
 	uint64_t strobe_due_ns, strobe_off_ns; /* LAB_NEVER: none */
 	struct match match;
-	uint64_t trigger_ns, triggers; /* the newest edge that no flip has had yet, 0 none */
+	uint64_t trigger_ns[LAB_TRIGGERS]; /* edges whose flip is still to come, as they came */
+	uint32_t trigger_count;
+	uint64_t triggers; /* ever */
 	struct lab_picture pictures[LAB_PICTURES];
 	bool front_level; /* of the patch on display */
 	uint32_t front_code;
 	struct rows rows;
+	uint64_t publish_ns; /* rows are not handed on before: somebody reads */
 	double period_ns;
 	uint64_t last_vblank, last_target_ns;
 	bool woken; /* the eventfd has something to be read */

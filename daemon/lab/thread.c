@@ -18,6 +18,7 @@
 
 /* A clock that stood still or jumped must not make a refresh of it. */
 #define MOST_PERIOD_NS 1e9
+#define PUBLISH_AGAIN_NS UINT64_C(1000000)
 
 /* ---- flips ---- */
 
@@ -161,10 +162,14 @@ static void publish(struct lab *lab, const struct points *points)
 static void publish_settled(struct lab *lab, uint64_t now_ns, bool all)
 {
 	struct points points;
-	if (all)
+	if (all) {
 		pthread_mutex_lock(&lab->shared.lock);
-	else if (pthread_mutex_trylock(&lab->shared.lock) != 0)
+	} else if (pthread_mutex_trylock(&lab->shared.lock) != 0) {
+		/* Asked for without a pause, whoever reads might never get this core. */
+		lab->publish_ns = now_ns + PUBLISH_AGAIN_NS;
 		return;
+	}
+	lab->publish_ns = 0;
 	while (rows_take(&lab->rows, now_ns, all, &points))
 		publish(lab, &points);
 	publish_state(lab);
@@ -178,7 +183,8 @@ static uint64_t next_time(const struct lab *lab)
 	uint64_t next = outputs_next(lab);
 	if (inputs_next(lab) < next)
 		next = inputs_next(lab);
-	return rows_next(&lab->rows) < next ? rows_next(&lab->rows) : next;
+	const uint64_t rows_ns = rows_next(&lab->rows) > lab->publish_ns ? rows_next(&lab->rows) : lab->publish_ns;
+	return rows_ns < next ? rows_ns : next;
 }
 
 static int fd_of(const struct lines *lines)

@@ -66,6 +66,39 @@ static void test_untold(void)
 	CHECK(rows_find(&rows, 1) != NULL);
 }
 
+static struct row *add_at(struct rows *rows, uint64_t vblank, uint64_t flip_ns)
+{
+	struct row *row = add(rows, vblank);
+	row->points.time[POINT_FLIP] = flip_ns;
+	return row;
+}
+
+/* An edge of the trigger goes with the first flip that is not before it, in whatever order they are heard of. */
+static void test_triggers(void)
+{
+	static struct rows rows;
+	struct points points;
+	memset(&rows, 0, sizeof(rows));
+	rows.hold_ns = 100;
+	CHECK(!rows_trigger(&rows, 900));
+	const struct row *first = add_at(&rows, 1, 1000), *second = add_at(&rows, 2, 2000);
+	CHECK(rows_trigger(&rows, 900));
+	CHECK(rows_trigger(&rows, 1000));
+	CHECK_INT(first->points.time[POINT_TRIGGER], 1000);
+	CHECK(!rows_trigger(&rows, 2001));
+	CHECK(rows_trigger(&rows, 1001));
+	CHECK_INT(second->points.time[POINT_TRIGGER], 1001);
+	tell(&rows, 1);
+	tell(&rows, 2);
+	CHECK(!rows_take(&rows, NOW + 99, false, &points));
+	CHECK_INT(rows_next(&rows), NOW + 100);
+	CHECK(rows_take(&rows, NOW + 100, false, &points));
+	CHECK_INT(points.time[POINT_TRIGGER], 1000);
+	/* Too late for the one that was taken; the other one is not its flip. */
+	CHECK(rows_trigger(&rows, 950));
+	CHECK_INT(second->points.time[POINT_TRIGGER], 1001);
+}
+
 static void test_spans(void)
 {
 	static struct spans spans;
@@ -124,6 +157,7 @@ int main(void)
 {
 	RUN(test_order);
 	RUN(test_untold);
+	RUN(test_triggers);
 	RUN(test_spans);
 	RUN(test_patch);
 	return test_result();
