@@ -179,7 +179,9 @@ def check_trigger():
     # The newest of those between two flips is noted, so the older one of two in one refresh is not.
     newest = {}
     for before, after in pulls:
-        flip = next((flip for flip, _ in rows if flip > after), None)
+        # A flip may lie within a pull: then it is the edge's own stamp that says whose it is.
+        stamp = next((trigger for _, trigger in rows if before <= trigger <= after), after)
+        flip = next((flip for flip, _ in rows if flip >= stamp), None)
         if flip:
             newest[flip] = (before, after)
     wrong = []
