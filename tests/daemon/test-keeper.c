@@ -179,15 +179,15 @@ bool drawer_wait(struct drawer *drawer, uint64_t until_ns, struct drawer_swap *s
 
 /* ---- whoever presents: a picture for each vblank, two ahead ---- */
 
-static void present(uint64_t vblank)
+static bool present(uint64_t vblank)
 {
 	struct presenter_image image;
 	if (presenter->impl->acquire(presenter, 16, 16, &image) < 0)
-		return;
-	if (presenter->impl->present(presenter, &image, vblank, vblank, vblank) < 0)
-		presenter->impl->release(presenter, &image);
-	else
-		presented++;
+		return false;
+	if (presenter->impl->present(presenter, &image, vblank, vblank, vblank) == 0)
+		return true;
+	presenter->impl->release(presenter, &image);
+	return false;
 }
 
 static void on_flip(void *data, const struct presenter_flip *flip)
@@ -213,7 +213,7 @@ static void on_flip(void *data, const struct presenter_flip *flip)
 		state.changes++;
 		fake_window.params.changed(fake_window.params.data, &state);
 	}
-	present(flip->vblank + 2);
+	presented += present(flip->vblank + 2);
 	if (flips >= VBLANKS)
 		atomic_store(&done, true);
 }
@@ -250,12 +250,13 @@ static void run(uint64_t quick, uint64_t slow, bool hide)
 	hides = hide;
 	dated = on_vblank = off_vblank = 0;
 	wire_next_ns = PERIOD_NS * 120;
-	flips = drawn = late_between = shown = presented = drawn_at_end = orders_between = 0;
+	flips = drawn = late_between = shown = drawn_at_end = orders_between = 0;
+	presented = 1; /* that which starts the keeper, below */
 	atomic_store(&done, false);
 	presenter = presenter_glfw.create(&params, &error);
 	CHECK(presenter != NULL);
 	const struct grid grid = presenter->impl->get_grid(presenter);
-	present(grid_at_or_after(&grid, clock_now(&virtual_clock.clock)) + 60);
+	CHECK(present(grid_at_or_after(&grid, clock_now(&virtual_clock.clock)) + 60));
 	while (!atomic_load(&done))
 		sched_yield();
 	presenter->impl->destroy(presenter);
