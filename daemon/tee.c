@@ -8,16 +8,16 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "daemon/record/image.h"
 #include "daemon/record/pattern.h"
 #include "daemon/record/y4m.h"
+#include "daemon/worker.h"
 
 #define PICTURES 20u
 #define QUEUED 64u
-#define LAST_SECONDS 5
+#define PATIENCE_NS UINT64_C(5000000000)
 
 struct tee_picture {
 	uint8_t *data;          /* packed */
@@ -30,7 +30,7 @@ struct tee {
 	char path[512];
 	bool images; /* `path` is a pattern */
 	FILE *times;
-	pthread_t thread;
+	struct worker *worker;
 	pthread_mutex_t lock; /* for all below but `video` */
 	pthread_cond_t wake;
 	bool stop, failed, drop_said;
@@ -109,7 +109,7 @@ static void write_next(struct tee *tee)
 	tee->count--;
 }
 
-static void *run(void *data)
+static void run(void *data)
 {
 	struct tee *tee = data;
 	pthread_setname_np(pthread_self(), "pursuit-tee");
@@ -121,7 +121,6 @@ static void *run(void *data)
 			pthread_cond_wait(&tee->wake, &tee->lock);
 	}
 	pthread_mutex_unlock(&tee->lock);
-	return NULL;
 }
 
 /* ---- the drawing thread ---- */
@@ -222,10 +221,10 @@ struct tee *tee_create(const struct tee_params *params, struct error *error)
 	fprintf(tee->times, "vblank,sequence,target_ns,flip_ns,time_source,picture,shown\n");
 	pthread_mutex_init(&tee->lock, NULL);
 	pthread_cond_init(&tee->wake, NULL);
-	const int result = pthread_create(&tee->thread, NULL, run, tee);
+	const int result = worker_create(&tee->worker, run, tee);
 	if (result == 0)
 		return tee;
-	error_set(error, -result, "tee: cannot start a thread: %s", strerror(result));
+	error_set(error, result, "tee: cannot start a thread: %s", strerror(-result));
 	fclose(tee->times);
 	pthread_cond_destroy(&tee->wake);
 	pthread_mutex_destroy(&tee->lock);
@@ -249,10 +248,7 @@ static void close_files(struct tee *tee)
 /* False: the disk does not answer; the thread has its memory for ever. */
 static bool wait_for_thread(struct tee *tee)
 {
-	struct timespec until;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_sec += LAST_SECONDS;
-	if (pthread_clockjoin_np(tee->thread, NULL, CLOCK_MONOTONIC, &until) == 0)
+	if (worker_destroy(&tee->worker, PATIENCE_NS, NULL))
 		return true;
 	pthread_mutex_lock(&tee->lock);
 	log_error(tee->params.log,

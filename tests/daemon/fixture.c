@@ -42,11 +42,21 @@ void fixture_init(struct fixture *fixture, const char *program)
 	snprintf(fixture->log, sizeof(fixture->log), "%s/log", fixture->folder);
 }
 
+static void print_log(const struct fixture *fixture)
+{
+	char command[128];
+	snprintf(command, sizeof(command), "cat '%s' >&2", fixture->log);
+	if (system(command) != 0)
+		perror(command);
+}
+
 void fixture_finish(struct fixture *fixture)
 {
 	char command[128];
 	if (fixture->pid > 0)
 		fixture_stop(fixture, SIGKILL);
+	if (test_failed())
+		print_log(fixture);
 	snprintf(command, sizeof(command), "rm -rf '%s'", fixture->folder);
 	if (system(command) != 0)
 		perror(command);
@@ -113,10 +123,7 @@ void fixture_start(struct fixture *fixture, const char *const *arguments)
 		return;
 	const int status = fixture_join(fixture);
 	const bool no_gl = status == 1 && log_has(fixture, "ontext");
-	char command[128];
-	snprintf(command, sizeof(command), "cat '%s' >&2", fixture->log);
-	if (system(command) != 0)
-		perror(command);
+	print_log(fixture);
 	fixture_finish(fixture);
 	if (no_gl)
 		SKIP("no GL context can be made on this machine");

@@ -24,7 +24,7 @@ struct fixture {
 
 /* Makes the folder. */
 void fixture_init(struct fixture *fixture, const char *program);
-/* Kills what runs and removes the folder. */
+/* Kills what runs and removes the folder; prints the daemon's log if a check has failed. */
 void fixture_finish(struct fixture *fixture);
 
 /* Runs pursuitd with `--method hold --socket ...` and these arguments (NULL-terminated, may be NULL). */

@@ -29,7 +29,7 @@ MAY_INCLUDE = {
     "daemon/engine/": ("daemon/engine/", "daemon/frame.h", "daemon/error.h", "proto/", "shaders/"),
     "daemon/engine/analysis/": ("daemon/engine/analysis/", "daemon/engine/plan.h", "daemon/engine/pool.h",
                                 "daemon/frame.h", "daemon/error.h", "proto/"),
-    "daemon/present/": ("daemon/present/", "daemon/error.h", "daemon/clock.h", "daemon/log.h"),
+    "daemon/present/": ("daemon/present/", "daemon/error.h", "daemon/clock.h", "daemon/log.h", "daemon/worker.h"),
     "daemon/lab/": ("daemon/lab/", "daemon/present/", "daemon/error.h", "daemon/clock.h", "daemon/log.h"),
     "daemon/measure/": ("daemon/measure/",),
     "daemon/record/": ("daemon/record/", "daemon/frame.h", "daemon/error.h", "proto/"),
