@@ -290,6 +290,7 @@ char *control_status_text(struct control *control)
 	json_object_set_new(object, "refresh_text", json_string(refresh));
 	json_object_set_new(object, "presenter", json_string(info.presenter));
 	json_object_set_new(object, "display", json_string(info.display));
+	json_object_set_new(object, "display_trouble", json_string(info.trouble));
 	json_object_set_new(object, "flip_time_source", json_string(presenter_time_source_name(info.time_source)));
 	json_object_set_new(object, "renderer", json_string(info.renderer));
 	json_object_set_new(object, "context", json_string(info.context));

@@ -324,9 +324,22 @@ void display_destroy(struct display **display)
 	free(self);
 }
 
+/* NULL: there is none that stays. */
+static struct presenter *presenter_of(const struct display *display)
+{
+	return display->now && !display->taken_away ? display->now->presenter : NULL;
+}
+
+void display_get_trouble(struct display *display, char *text, size_t size)
+{
+	struct presenter *presenter = presenter_of(display);
+	if (!presenter || !presenter->impl->get_trouble || !presenter->impl->get_trouble(presenter, text, size))
+		text[0] = 0;
+}
+
 void display_toggle_fullscreen(struct display *display)
 {
-	struct presenter *presenter = display->now && !display->taken_away ? display->now->presenter : NULL;
+	struct presenter *presenter = presenter_of(display);
 	if (presenter && presenter->impl->toggle_fullscreen)
 		presenter->impl->toggle_fullscreen(presenter);
 }

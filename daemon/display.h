@@ -47,6 +47,9 @@ void display_destroy(struct display **display);
 /* Any thread: the presenter that change(NULL) took away is not used any more. */
 void display_let_go(struct display *display);
 
+/* What keeps the presenter from showing anything, though there is one; "": nothing. */
+void display_get_trouble(struct display *display, char *text, size_t size);
+
 /* Between window and full screen, where the presenter has both. */
 void display_toggle_fullscreen(struct display *display);
 

@@ -236,6 +236,7 @@ void output_get_info(struct output *output, struct output_info *info)
 	pthread_mutex_lock(&output->lock);
 	*info = output->info;
 	pthread_mutex_unlock(&output->lock);
+	display_get_trouble(output->display, info->trouble, sizeof(info->trouble));
 }
 
 void output_get_stats(struct output *output, struct stats *stats)

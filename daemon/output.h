@@ -64,6 +64,7 @@ struct output_params {
 struct output_info {
 	char method[32];
 	char display[192];  /* which one in which mode; "" without one */
+	char trouble[96];   /* what keeps the presenter from showing anything; "": nothing */
 	char presenter[32]; /* "none": lost, and no other works */
 	char renderer[128], context[32];
 	bool software;

@@ -21,7 +21,9 @@ struct drawer {
 	pthread_t thread;
 	pthread_mutex_t lock; /* for what is between here and there */
 	pthread_cond_t wake, done;
-	bool stop, started, under_way;
+	bool stop, started, under_way, ended, left;
+	void (*gone)(void *data); /* whose this is, once it is left */
+	void *gone_data;
 	int start_result;
 	struct error start_error;
 	bool black;
@@ -38,6 +40,14 @@ struct drawer {
 static struct timespec timespec_of(uint64_t time_ns)
 {
 	return (struct timespec){(time_t)(time_ns / SECOND), (long)(time_ns % SECOND)};
+}
+
+static void free_drawer(struct drawer *drawer)
+{
+	pthread_cond_destroy(&drawer->wake);
+	pthread_cond_destroy(&drawer->done);
+	pthread_mutex_destroy(&drawer->lock);
+	free(drawer);
 }
 
 /* ---- the thread ---- */
@@ -108,19 +118,10 @@ static void on_exit_in_start(void *data)
 	say_started(data, -EIO, &error);
 }
 
-static void *run(void *data)
+static void carry_out_orders(struct drawer *drawer)
 {
-	struct drawer *drawer = data;
-	struct error error = {""};
-	int result;
-	pthread_setname_np(pthread_self(), "pursuit-swap");
-	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
-	pthread_cleanup_push(on_exit_in_start, drawer);
-	result = start(drawer, &error);
-	pthread_cleanup_pop(0);
-	say_started(drawer, result, &error);
 	pthread_mutex_lock(&drawer->lock);
-	while (!drawer->stop && result == 0) {
+	while (!drawer->stop) {
 		if (!drawer->under_way) {
 			pthread_cond_wait(&drawer->wake, &drawer->lock);
 			continue;
@@ -133,20 +134,42 @@ static void *run(void *data)
 		pthread_cond_signal(&drawer->done);
 	}
 	pthread_mutex_unlock(&drawer->lock);
+}
+
+static void on_end(void *data)
+{
+	struct drawer *drawer = data;
+	pthread_mutex_lock(&drawer->lock);
+	drawer->ended = true;
+	const bool left = drawer->left;
+	pthread_mutex_unlock(&drawer->lock);
+	if (!left)
+		return;
+	drawer->gone(drawer->gone_data);
+	free_drawer(drawer);
+}
+
+static void *run(void *data)
+{
+	struct drawer *drawer = data;
+	struct error error = {""};
+	int result;
+	pthread_setname_np(pthread_self(), "pursuit-swap");
+	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
+	pthread_cleanup_push(on_end, drawer);
+	pthread_cleanup_push(on_exit_in_start, drawer);
+	result = start(drawer, &error);
+	pthread_cleanup_pop(0);
+	say_started(drawer, result, &error);
+	if (result == 0)
+		carry_out_orders(drawer);
 	blit_finish(&drawer->blit);
 	window_let_go(drawer->window);
+	pthread_cleanup_pop(1);
 	return NULL;
 }
 
 /* ---- whoever orders ---- */
-
-static void free_drawer(struct drawer *drawer)
-{
-	pthread_cond_destroy(&drawer->wake);
-	pthread_cond_destroy(&drawer->done);
-	pthread_mutex_destroy(&drawer->lock);
-	free(drawer);
-}
 
 struct drawer *drawer_create(struct window *window, struct clock *clock, struct error *error)
 {
@@ -190,7 +213,20 @@ int drawer_wait_for_start(struct drawer *drawer, struct error *error)
 	return result;
 }
 
-bool drawer_destroy(struct drawer **drawer)
+/* It did not end within a second; perhaps it does now. */
+static bool leave(struct drawer *drawer, void (*gone)(void *data), void *data)
+{
+	pthread_mutex_lock(&drawer->lock);
+	const bool left = drawer->left = !drawer->ended;
+	drawer->gone = gone;
+	drawer->gone_data = data;
+	if (left)
+		pthread_detach(drawer->thread);
+	pthread_mutex_unlock(&drawer->lock);
+	return left;
+}
+
+bool drawer_destroy(struct drawer **drawer, void (*gone)(void *data), void *data)
 {
 	struct drawer *self = *drawer;
 	struct timespec until;
@@ -203,8 +239,11 @@ bool drawer_destroy(struct drawer **drawer)
 	pthread_mutex_unlock(&self->lock);
 	clock_gettime(CLOCK_MONOTONIC, &until);
 	until.tv_sec++;
-	if (pthread_clockjoin_np(self->thread, NULL, CLOCK_MONOTONIC, &until) != 0)
-		return false;
+	if (pthread_clockjoin_np(self->thread, NULL, CLOCK_MONOTONIC, &until) != 0) {
+		if (leave(self, gone, data))
+			return false;
+		pthread_join(self->thread, NULL);
+	}
 	free_drawer(self);
 	return true;
 }

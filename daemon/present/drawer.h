@@ -32,9 +32,11 @@ struct drawer *drawer_create(struct window *window, struct clock *clock, struct 
  * server went away meanwhile and -ETIMEDOUT if it does not answer. Before anything is ordered.
  */
 int drawer_wait_for_start(struct drawer *drawer, struct error *error);
-/* False: the thread hangs in its start or in a swap. It and the window must be left alone for ever; *drawer is cleared
- * anyway. */
-bool drawer_destroy(struct drawer **drawer);
+/*
+ * False: the thread hangs in its start or in a swap, for longer than a second; it frees the drawer when it comes back,
+ * if ever, and calls gone() then, until when the window and the picture that was ordered must stay. NULL accepted.
+ */
+bool drawer_destroy(struct drawer **drawer, void (*gone)(void *data), void *data);
 
 /*
  * Orders this picture (NULL: black) for a window of that size, swapped so many times in a row (1 to DRAWER_SWAPS).

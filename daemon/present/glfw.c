@@ -2,8 +2,8 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * The GLFW presenter: a window, or full screen, on a desktop. Main makes the
- * window and handles its events; a thread here, the keeper of vblanks, takes
+ * The GLFW presenter: a window, or full screen, on a desktop. The window has a
+ * thread of its own for its events; a thread here, the keeper of vblanks, takes
  * the picture of each one out of the queue and orders it from the drawing
  * thread, whose swaps may wait for the display as long as they like. One that
  * does not come back in time leaves the keeper counting vblanks by the clock;
@@ -22,6 +22,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
+#include <sys/timerfd.h>
+#include <unistd.h>
 
 #include "daemon/present/drawer.h"
 #include "daemon/present/pictures.h"
@@ -37,14 +39,20 @@
 /* Swaps in a row: so many that did not come back leave the clock alone, so many quick ones are waited for again. */
 #define MISSING_SWAPS 8u
 #define QUICK_SWAPS 30u
+/* A display server that has not answered for so long hangs; this often is looked whether. */
+#define SILENCE_NS (1000 * MS)
+#define SILENCE_LOOK_NS 500000000l
 
 struct glfw {
 	struct pictures pictures; /* its lock is for what follows, unless it says otherwise */
-	struct window *window;    /* main's */
+	struct window *window;
 	pthread_t keeper;
 	struct window_state state;
-	uint32_t fit_width, fit_height; /* of the first picture, until main has seen it */
-	bool fitted;
+
+	/* main's own */
+	int timer_fd;
+	bool silence_said;
+
 	atomic_bool open, lost; /* its user knows it, and wants to hear of its loss; it is lost */
 
 	/* the render thread's own; the context does not change */
@@ -54,6 +62,7 @@ struct glfw {
 
 	/* the keeper's own */
 	struct drawer *drawer;
+	bool fitted;                          /* the window knows the size of the first picture */
 	bool under_way, stuck_said, by_clock; /* by_clock: no vblank waits for its swap */
 	uint32_t missing, quick;              /* swaps in a row */
 	uint64_t ordered_ns;
@@ -262,12 +271,12 @@ static void keep_vblank(struct glfw *self)
 				note_swap(self, &swap, &flip);
 		}
 	}
-	if (!self->fitted && pictures->flips.has_front && pictures->flips.front.group > 0) {
-		self->fitted = true;
-		self->fit_width = pictures->shapes[pictures->flips.front.image].width;
-		self->fit_height = pictures->shapes[pictures->flips.front.image].height;
-	}
+	const bool is_first = !self->fitted && pictures->flips.has_front && pictures->flips.front.group > 0;
+	const struct presenter_image shape = pictures->shapes[is_first ? pictures->flips.front.image : 0];
+	self->fitted |= is_first;
 	pthread_mutex_unlock(&pictures->lock);
+	if (is_first)
+		window_fit(self->window, shape.width, shape.height);
 	if (flip.time_source == PRESENTER_TIME_TIMER) {
 		clock_wait_until(pictures->params.clock, flip.target_ns);
 		flip.flip_ns = clock_now(pictures->params.clock);
@@ -324,7 +333,7 @@ static void *run(void *data)
 	return NULL;
 }
 
-/* ---- main ---- */
+/* ---- the window's thread ---- */
 
 static void on_key(void *data, uint32_t code)
 {
@@ -350,17 +359,39 @@ static void on_lost(void *data, const char *sentence)
 		self->pictures.params.lost(self->pictures.params.data, sentence);
 }
 
-static void free_glfw(struct glfw *self)
+/* ---- main ---- */
+
+/* Nobody draws any more. */
+static void free_rest(void *data)
 {
-	if (!drawer_destroy(&self->drawer)) {
-		atomic_store(&self->open, false);
-		/* The thread that hangs in it goes on with the window, its events and the picture when it comes back. */
-		log_warning(self->pictures.params.log, "glfw: a swap hangs; its window is left behind");
-		return;
-	}
+	struct glfw *self = data;
 	window_destroy(&self->window);
 	pictures_finish(&self->pictures);
 	free(self);
+}
+
+static void free_glfw(struct glfw *self)
+{
+	const struct log *log = self->pictures.params.log;
+	if (self->timer_fd >= 0)
+		close(self->timer_fd);
+	if (self->window)
+		window_mute(self->window);
+	if (drawer_destroy(&self->drawer, free_rest, self)) {
+		free_rest(self);
+		return;
+	}
+	log_warning(log, "glfw: a swap hangs; its window is left behind until it does not");
+	window_leave_at_exit();
+}
+
+static int open_timer(struct glfw *self, struct error *error)
+{
+	const struct itimerspec often = {{0, SILENCE_LOOK_NS}, {0, SILENCE_LOOK_NS}};
+	self->timer_fd = timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
+	if (self->timer_fd < 0 || timerfd_settime(self->timer_fd, 0, &often, NULL) < 0)
+		return error_set(error, -errno, "glfw: no timer: %s", strerror(errno));
+	return 0;
 }
 
 static int open_all(struct glfw *self, struct error *error)
@@ -375,6 +406,8 @@ static int open_all(struct glfw *self, struct error *error)
 		.lost = on_lost,
 		.data = self,
 	};
+	if (open_timer(self, error) < 0)
+		return -EMFILE;
 	self->window = window_create(&window_params, error);
 	if (!self->window)
 		return -ENODEV;
@@ -404,6 +437,7 @@ static struct presenter *glfw_create(const struct presenter_params *params, stru
 		error_set(error, -ENOMEM, "glfw: out of memory");
 		return NULL;
 	}
+	self->timer_fd = -1;
 	pictures_init(&self->pictures, &presenter_glfw, params);
 	if (open_all(self, error) == 0)
 		return open_to_user(self);
@@ -424,19 +458,31 @@ static void glfw_destroy(struct presenter *presenter)
 
 static int glfw_get_event_fd(struct presenter *presenter)
 {
-	return window_get_event_fd(((struct glfw *)presenter)->window);
+	return ((struct glfw *)presenter)->timer_fd;
 }
 
+/* A server that does not answer is told of as long as it does not. */
 static void glfw_process_events(struct presenter *presenter)
 {
 	struct glfw *self = (struct glfw *)presenter;
-	window_process_events(self->window);
-	pthread_mutex_lock(&self->pictures.lock);
-	const uint32_t width = self->fit_width, height = self->fit_height;
-	self->fit_width = 0;
-	pthread_mutex_unlock(&self->pictures.lock);
-	if (width)
-		window_fit(self->window, width, height);
+	const struct log *log = self->pictures.params.log;
+	uint64_t count;
+	if (read(self->timer_fd, &count, sizeof(count)) < 0)
+		return;
+	const bool silent = window_silence_ns(self->window) > SILENCE_NS;
+	if (silent && !self->silence_said)
+		log_warning(log, "glfw: the display server does not answer; vblanks are counted by the clock until it does");
+	else if (!silent && self->silence_said && !atomic_load(&self->lost))
+		log_info(log, "glfw: the display server answers again");
+	self->silence_said = silent;
+}
+
+static bool glfw_get_trouble(struct presenter *presenter, char *text, size_t size)
+{
+	const uint64_t silence_ns = window_silence_ns(((struct glfw *)presenter)->window);
+	if (silence_ns > SILENCE_NS)
+		snprintf(text, size, "the display server has not answered for %.1f s", (double)silence_ns * 1e-9);
+	return silence_ns > SILENCE_NS;
 }
 
 static bool glfw_is_possible(const struct presenter_params *params)
@@ -484,5 +530,6 @@ const struct presenter_impl presenter_glfw = {
 	.pause = pictures_pause,
 	.get_event_fd = glfw_get_event_fd,
 	.process_events = glfw_process_events,
+	.get_trouble = glfw_get_trouble,
 	.toggle_fullscreen = glfw_toggle_fullscreen,
 };

@@ -13,8 +13,8 @@
  *   group: a number that rises with every real frame. A real frame, its
  *          in-betweens and its standby picture have the same.
  *
- * Threads: create, destroy, get_event_fd, process_events and toggle_fullscreen
- * are called on main, where nothing may wait for a display; all others on the
+ * Threads: create, destroy, get_event_fd, process_events, get_trouble and
+ * toggle_fullscreen are called on main, where nothing may wait for a display; all others on the
  * render thread, only between create and destroy. Events (flip, lost, key) come
  * on a thread of the presenter's choice, never with a lock held, and none comes
  * once destroy has returned.
@@ -190,6 +190,8 @@ struct presenter_impl {
 	 */
 	int (*get_event_fd)(struct presenter *presenter);
 	void (*process_events)(struct presenter *presenter);
+	/* Optional: is it kept from showing anything, though it is not lost? Then a sentence says by what. */
+	bool (*get_trouble)(struct presenter *presenter, char *text, size_t size);
 	/* Optional: between window and full screen. */
 	void (*toggle_fullscreen)(struct presenter *presenter);
 };

@@ -3,9 +3,11 @@
 
 /*
  * A window with a GL context, of the GLFW presenter: the only file behind it
- * includes GLFW, which wants one window library a process, made and asked for
- * events on main. Functions of the drawing thread are marked so; that thread
- * has the context.
+ * includes GLFW, which wants one user a process, always on the same thread. That
+ * is main elsewhere; on X11 and Wayland it may be any, so it is one of the
+ * window's own (window_thread.h), and a display server that hangs keeps nobody
+ * else waiting. Functions of the drawing thread are marked so; that thread has
+ * the context.
  */
 #ifndef PURSUIT_WINDOW_H
 #define PURSUIT_WINDOW_H
@@ -31,7 +33,7 @@ struct window_params {
 	const struct log *log;
 	const struct presenter_options *options; /* valid while it is created */
 	double refresh_hz;                       /* wished for, for full screen */
-	/* On main. */
+	/* On the window's thread, which no function of this file may be called on. */
 	void (*key)(void *data, uint32_t code);
 	void (*changed)(void *data, const struct window_state *state);
 	/* On any thread, once: the display server is gone. */
@@ -39,22 +41,28 @@ struct window_params {
 	void *data;
 };
 
-/* ---- main ---- */
+/* ---- any thread ---- */
 
-/* May one be made by now? Asks the display server, if there is one; makes nothing. */
+/* May one be made by now? Asks the display server, if there is one, half a second at most; makes nothing. */
 bool window_is_possible(void);
-/* Shows an empty window. NULL with a sentence. */
+/* Shows an empty window. NULL with a sentence, after a few seconds at most. */
 struct window *window_create(const struct window_params *params, struct error *error);
 /*
  * After the drawing thread has let the context go, and the other thread that of window_get_context(). Also once it is
- * lost: then another window can be made when there is a server again. NULL accepted.
+ * lost: then another window can be made when there is a server again. Where the server hangs the rest is done when it
+ * answers, and until then no other window can be made; what it was created with is not used any more in any case.
+ * NULL accepted.
  */
 void window_destroy(struct window **window);
+/* Nothing that it was created with is used any more, but it cannot be destroyed yet. */
+void window_mute(struct window *window);
 
-/* Readable when window_process_events() has something to do: events of the display server, else every 10 ms. */
-int window_get_event_fd(const struct window *window);
-void window_process_events(struct window *window);
-/* These two are done with the next events. */
+/* For a window that is left behind: at the process's exit nothing of its libraries is tidied up. */
+void window_leave_at_exit(void);
+
+/* For how long the display server has not answered; 0 while it does. */
+uint64_t window_silence_ns(const struct window *window);
+/* These two are done as soon as it answers. */
 void window_toggle_fullscreen(struct window *window);
 /* The size of pictures: a window whose size nobody wished for takes it, as far as it fits the monitor. */
 void window_fit(struct window *window, uint32_t width, uint32_t height);

@@ -54,6 +54,7 @@ bool x_errors_call(void (*function)(void *data), void *data)
 
 bool x_errors_can_connect(void)
 {
+	XInitThreads();
 	Display *display = XOpenDisplay(NULL);
 	if (display)
 		XCloseDisplay(display);

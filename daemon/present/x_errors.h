@@ -3,7 +3,7 @@
 
 /*
  * An X server that goes away, or refuses something, must not end the process, which is what Xlib does about it. For the
- * whole process; the window's thread is main.
+ * whole process.
  */
 #ifndef PURSUIT_X_ERRORS_H
 #define PURSUIT_X_ERRORS_H
@@ -23,7 +23,7 @@ void x_errors_watch(Display *display, XIOErrorExitHandler broken, void *data);
  */
 bool x_errors_call(void (*function)(void *data), void *data);
 
-/* Is there a server now? */
+/* Is there a server now? Waits for its answer. */
 bool x_errors_can_connect(void);
 
 #endif

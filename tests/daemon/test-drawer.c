@@ -75,7 +75,7 @@ static void test_refused(void)
 	CHECK(drawer != NULL);
 	CHECK_INT(drawer_wait_for_start(drawer, &error), -EIO);
 	CHECK_STRING(error.text, "no context");
-	CHECK(drawer_destroy(&drawer));
+	CHECK(drawer_destroy(&drawer, NULL, NULL));
 }
 
 static void test_server_goes_away(void)
@@ -86,25 +86,34 @@ static void test_server_goes_away(void)
 	CHECK(drawer != NULL);
 	CHECK_INT(drawer_wait_for_start(drawer, &error), -EIO);
 	CHECK(strstr(error.text, "went away") != NULL);
-	CHECK(drawer_destroy(&drawer));
+	CHECK(drawer_destroy(&drawer, NULL, NULL));
+}
+
+static void say_gone(void *data)
+{
+	sem_post(data);
 }
 
 static void test_server_hangs(void)
 {
-	static struct window window = {.server = HANGS};
-	static struct drawer *left_behind;
+	struct window window = {.server = HANGS};
 	struct error error = {""};
+	struct timespec until;
+	sem_t gone;
 	sem_init(&window.again, 0, 0);
+	sem_init(&gone, 0, 0);
 	struct drawer *drawer = drawer_create(&window, &real_clock, &error);
-	left_behind = drawer;
 	CHECK(drawer != NULL);
 	CHECK_INT(drawer_wait_for_start(drawer, &error), -ETIMEDOUT);
 	CHECK(strstr(error.text, "does not answer") != NULL);
-	CHECK(!drawer_destroy(&drawer));
+	CHECK(!drawer_destroy(&drawer, say_gone, &gone));
 	CHECK(!drawer);
-	/* Its thread ends by itself when it comes back. */
+	CHECK(sem_trywait(&gone) < 0);
+	/* Its thread ends by itself when it comes back, and says so. */
 	sem_post(&window.again);
-	(void)left_behind;
+	clock_gettime(CLOCK_REALTIME, &until);
+	until.tv_sec += 60;
+	CHECK_INT(sem_timedwait(&gone, &until), 0);
 }
 
 int main(void)

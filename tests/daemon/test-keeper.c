@@ -65,15 +65,19 @@ void window_destroy(struct window **window)
 	*window = NULL;
 }
 
-int window_get_event_fd(const struct window *window)
+void window_mute(struct window *window)
 {
 	(void)window;
-	return -1;
 }
 
-void window_process_events(struct window *window)
+void window_leave_at_exit(void)
+{
+}
+
+uint64_t window_silence_ns(const struct window *window)
 {
 	(void)window;
+	return 0;
 }
 
 void window_toggle_fullscreen(struct window *window)
@@ -122,8 +126,10 @@ int drawer_wait_for_start(struct drawer *drawer, struct error *error)
 	return 0;
 }
 
-bool drawer_destroy(struct drawer **drawer)
+bool drawer_destroy(struct drawer **drawer, void (*gone)(void *data), void *data)
 {
+	(void)gone;
+	(void)data;
 	*drawer = NULL;
 	return true;
 }
