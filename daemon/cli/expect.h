@@ -49,7 +49,7 @@ struct expect {
 	char pattern[1024]; /* of images; "": hashes */
 	enum expect_tolerance tolerance;
 	double limit;
-	uint64_t *numbers, *hashes; /* rising numbers */
+	uint64_t *numbers, *hashes; /* rising numbers; of images no hashes */
 	bool *seen;
 	uint32_t count;
 	char made_by[512]; /* renderer and version of the file of hashes */
@@ -59,7 +59,10 @@ struct expect {
 /* "40dB" or "2" (code values); false if it is neither. */
 bool expect_read_tolerance(const char *text, struct expect *expect);
 
-/* A file of hashes, a pattern of images, or a folder of numbered PNG files. 0 or a negative errno with a sentence. */
+/*
+ * A file of hashes, a pattern of images, or a folder of numbered PNG files, all of which are expected then (with a
+ * pattern of numbered folders nobody knows which there are). 0 or a negative errno with a sentence.
+ */
 int expect_load(struct expect *expect, const char *path, struct error *error);
 void expect_finish(struct expect *expect);
 

@@ -62,7 +62,7 @@ static bool read_options(struct replay_options *options, int argc, char **argv, 
 		 "a hash of each displayed frame, for --expect"},
 		{"expect", ARG_TEXT, &options->expect, 0, 0, NULL, "FILE",
 		 "exit status 1 if a displayed frame is not the one of FILE (of --write-expect), or of images: a folder or a "
-		 "pattern as written by --write-frames"},
+		 "pattern as written by --write-frames; or if one of them is not displayed"},
 		{"expect-tolerance", ARG_TEXT, &options->expect_tolerance, 0, 0, NULL, "T",
 		 "for images: 2 (code values at most) or 45dB (PSNR at least); by default they are equal"},
 		{NULL},

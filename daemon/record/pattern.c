@@ -99,15 +99,43 @@ static bool match(const char *pattern, const char *folder, size_t prefix, const 
 	return errno == 0 && pattern_name(pattern, *number, name) && strcmp(name, path) == 0;
 }
 
-int pattern_range(const char *pattern, uint64_t *first, uint64_t *last, struct error *error)
+struct list {
+	uint64_t *numbers;
+	size_t count, room;
+};
+
+static bool add(struct list *list, uint64_t number)
+{
+	if (list->count == list->room) {
+		const size_t room = list->room ? 2 * list->room : 256;
+		uint64_t *numbers = realloc(list->numbers, room * sizeof(*numbers));
+		if (!numbers)
+			return false;
+		list->numbers = numbers;
+		list->room = room;
+	}
+	list->numbers[list->count++] = number;
+	return true;
+}
+
+static int compare(const void *a, const void *b)
+{
+	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+	return (x > y) - (x < y);
+}
+
+int pattern_list(const char *pattern, uint64_t **numbers, size_t *count, struct error *error)
 {
 	size_t length;
 	int width;
 	char folder[PATTERN_MAX_PATH], start[PATTERN_MAX_PATH];
 	const char *at = find_conversion(pattern, &length, &width);
 	const char *slash = strrchr(pattern, '/');
-	bool found = false;
+	struct list list = {NULL, 0, 0};
+	bool whole = true;
 
+	*numbers = NULL;
+	*count = 0;
 	if (!at || strlen(pattern) > PATTERN_MAX_PATH - 16 || (slash && slash > at))
 		return error_set(error, -EINVAL, "%s: numbered folders cannot be searched: give --first and --last", pattern);
 	*append(folder, pattern, slash ? slash + 1 : pattern) = '\0';
@@ -115,14 +143,34 @@ int pattern_range(const char *pattern, uint64_t *first, uint64_t *last, struct e
 	DIR *dir = opendir(folder[0] ? folder : ".");
 	if (!dir)
 		return error_set(error, -errno, "%s: folder cannot be read: %s", folder[0] ? folder : ".", strerror(errno));
-	for (struct dirent *entry; (entry = readdir(dir));) {
+	for (struct dirent *entry; whole && (entry = readdir(dir));) {
 		uint64_t number;
-		if (!match(pattern, folder, prefix, entry->d_name, &number))
-			continue;
-		*first = !found || number < *first ? number : *first;
-		*last = !found || number > *last ? number : *last;
-		found = true;
+		if (match(pattern, folder, prefix, entry->d_name, &number))
+			whole = add(&list, number);
 	}
 	closedir(dir);
-	return found ? 0 : error_set(error, -ENOENT, "%s: no such file with any number: check the pattern", pattern);
+	if (!whole) {
+		free(list.numbers);
+		return error_set(error, -ENOMEM, "%s: out of memory", pattern);
+	}
+	if (list.count > 0)
+		qsort(list.numbers, list.count, sizeof(*list.numbers), compare);
+	*numbers = list.numbers;
+	*count = list.count;
+	return 0;
+}
+
+int pattern_range(const char *pattern, uint64_t *first, uint64_t *last, struct error *error)
+{
+	uint64_t *numbers;
+	size_t count;
+	const int result = pattern_list(pattern, &numbers, &count, error);
+	if (result < 0)
+		return result;
+	if (count == 0)
+		return error_set(error, -ENOENT, "%s: no such file with any number: check the pattern", pattern);
+	*first = numbers[0];
+	*last = numbers[count - 1];
+	free(numbers);
+	return 0;
 }

@@ -28,6 +28,12 @@ bool pattern_name(const char *pattern, uint64_t number, char name[PATTERN_MAX_PA
 
 bool pattern_exists(const char *pattern, uint64_t number);
 
+/*
+ * All numbers of which there is a file, rising; to be freed, *numbers NULL if there is none. 0 or a negative errno with
+ * a sentence: folders that are numbered themselves (-EINVAL) cannot be searched.
+ */
+int pattern_list(const char *pattern, uint64_t **numbers, size_t *count, struct error *error);
+
 /* Lowest and highest number of which there is a file. 0 or a negative errno with a sentence. */
 int pattern_range(const char *pattern, uint64_t *first, uint64_t *last, struct error *error);
 

@@ -144,6 +144,17 @@ class Replay(common.Case):
             self.must("replay", path, "--every", "2", "--method", "hold", "--expect", frames, "--expect-tolerance",
                       tolerance, status=status)
 
+    def test_images_that_were_not_displayed(self):
+        """A recording that has lost its end does not pass for what it was."""
+        path, frames = self.record("x.pursuit"), self.path("frames")
+        os.mkdir(frames)
+        self.must("replay", path, "--write-frames", frames + "/f_%04d.png")
+        os.truncate(path, os.path.getsize(path) // 2)
+        for expected in [frames, frames + "/f_%04d.png"]:
+            result = self.must("replay", path, "--expect", expected, "--expect-tolerance", "255", status=1)
+            self.assertRegex(result.stderr, r"[0-9]+ expected frames were not displayed")
+            self.assertNotIn("another renderer", result.stderr)
+
     def test_predictions_are_numbered_by_what_they_predict(self):
         path = self.record("x.pursuit", seconds=0.05)
         self.must("replay", path, "--predict", "--write-frames", self.path("p_%02d.png"))
