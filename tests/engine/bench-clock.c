@@ -9,7 +9,8 @@
 #include <sys/resource.h>
 #include <time.h>
 
-#define WARM_UP 3
+#define WARM_UP 9 /* until each image holds something */
+#define IMAGES 4u /* as many as presenters have in turn */
 
 static double now_ms(clockid_t clock)
 {
@@ -35,7 +36,8 @@ static void fail(const struct error *error)
 	exit(1);
 }
 
-static void show(struct engine *engine, const struct frame *frame, uint32_t n, struct engine_image *images)
+static void show(struct engine *engine, const struct frame *frame, uint32_t n, struct engine_image images[IMAGES],
+				 uint32_t *next)
 {
 	struct error error;
 	const struct engine_begin_params begin = {.n = n, .last_phase = -1.0};
@@ -43,12 +45,12 @@ static void show(struct engine *engine, const struct frame *frame, uint32_t n, s
 		fail(&error);
 	for (uint32_t i = 0; i < n; i++) {
 		const struct engine_request request = {i ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, (double)i / n};
-		if (engine_render(engine, &request, &images[i], &error) < 0)
+		if (engine_render(engine, &request, &images[(*next)++ % IMAGES], &error) < 0)
 			fail(&error);
 	}
 }
 
-/* All planes once, all displayed frames once. */
+/* All planes once, all displayed frames once, to memory that nobody else uses. */
 static void copy(const struct frame *frame, uint32_t n, size_t picture, uint8_t *in, uint8_t *out)
 {
 	for (uint32_t i = 0; i < frame->header.plane_count; i++)
@@ -66,14 +68,14 @@ static size_t largest_plane(const struct frame *frame)
 	return largest;
 }
 
-/* As a client that says that nothing has changed since its last frame. */
-static struct frame declared(const struct frame *frame, uint64_t id)
+/* The frame as that of a client's stream; `unchanged`: of one that says that nothing has changed since its last. */
+static struct frame next_of_stream(const struct frame *frame, uint64_t id, bool unchanged)
 {
 	struct frame next = *frame;
 	next.stream = 1;
 	next.header.frame_id = id;
 	next.header.damage_since = id - 1;
-	next.header.flags |= id > 1 ? PURSUIT_FRAME_DAMAGE : 0;
+	next.header.flags |= unchanged && id > 1 ? PURSUIT_FRAME_DAMAGE : 0;
 	return next;
 }
 
@@ -81,22 +83,22 @@ struct bench_times bench_time(struct engine *engine, const struct frame *frames,
 							  bool unchanged)
 {
 	const size_t picture = 4 * (size_t)frames->header.planes[0].width * frames->header.planes[0].height;
-	uint8_t *in = malloc(largest_plane(frames)), *out = malloc(n * picture);
+	const size_t stride = picture / frames->header.planes[0].height;
+	uint8_t *in = malloc(largest_plane(frames)), *copies = malloc(n * picture), *out = malloc(IMAGES * picture);
 	double wall[BENCH_FRAMES], cpu[BENCH_FRAMES], copied[BENCH_FRAMES];
-	struct engine_image images[8] = {0};
+	struct engine_image images[IMAGES];
+	uint32_t shown = 0;
+	for (uint32_t i = 0; i < IMAGES; i++)
+		images[i] = (struct engine_image){.data = out + i * picture, .stride = stride};
 	memset(in, 0, largest_plane(frames));
 	for (int i = -WARM_UP; i < BENCH_FRAMES; i++) {
-		struct frame next = frames[(uint32_t)(i + WARM_UP) % count];
+		const uint32_t id = (uint32_t)(i + WARM_UP);
+		const struct frame next = next_of_stream(&frames[unchanged ? 0 : id % count], id + 1, unchanged);
 		const struct frame *frame = &next;
-		if (unchanged)
-			next = declared(frames, (uint64_t)(i + WARM_UP + 1));
-		for (uint32_t k = 0; k < n && k < 8; k++)
-			images[k] = (struct engine_image){out + k * picture, picture / frame->header.planes[0].height,
-											  unchanged ? images[k].holds : 0};
 		double began = now_ms(CLOCK_MONOTONIC), cpu_began = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-		show(engine, frame, n, images);
+		show(engine, frame, n, images, &shown);
 		double ended = now_ms(CLOCK_MONOTONIC), cpu_ended = now_ms(CLOCK_PROCESS_CPUTIME_ID);
-		copy(frame, n, picture, in, out);
+		copy(frame, n, picture, in, copies);
 		if (i < 0)
 			continue;
 		wall[i] = ended - began;
@@ -107,6 +109,7 @@ struct bench_times bench_time(struct engine *engine, const struct frame *frames,
 	sort(cpu);
 	sort(copied);
 	free(in);
+	free(copies);
 	free(out);
 	return (struct bench_times){wall[BENCH_FRAMES / 2], wall[0], cpu[0], copied[BENCH_FRAMES / 2]};
 }

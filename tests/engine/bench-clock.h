@@ -17,8 +17,8 @@ struct bench_times {
 
 /*
  * Shows `count` frames one after another, BENCH_FRAMES in all after a few unmeasured ones, each as its real frame and
- * n - 1 in-betweens (n at most 8), into memory. `unchanged`: the first of them over and over, by a client that says so,
- * into memory that keeps what it holds. Ends the program if the engine fails.
+ * n - 1 in-betweens, into four pictures in memory that take turns and keep what they hold, as a presenter's do.
+ * `unchanged`: the first of them over and over, by a client that says so. Ends the program if the engine fails.
  */
 struct bench_times bench_time(struct engine *engine, const struct frame *frames, uint32_t count, uint32_t n,
 							  bool unchanged);

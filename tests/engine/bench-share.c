@@ -5,7 +5,7 @@
  * The cost of a real frame with its in-betweens against the share of the picture that moves, and of a still picture;
  * with the straight line that fits best, and the memory that the process has taken.
  *
- *   bench-share [CONTEXT [METHOD]]
+ *   bench-share [CONTEXT [METHOD [WIDTHxHEIGHT]]]
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,18 +30,28 @@ static void add(struct line *line, double x, double y)
 	line->xy += x * y;
 }
 
-/* What lies right of the moving share does not move. */
-static void still(const struct picture *picture, double share)
+/* What lies right of the moving share does not move, and is in all pictures what it is in the first. */
+static void still(const struct picture *picture, const struct picture *first, double share)
 {
-	uint32_t from = (uint32_t)(share * picture->width);
-	for (uint32_t y = 0; y < picture->height; y++)
-		memset(picture_row(picture, PURSUIT_ROLE_MOTION, y) + 8 * (size_t)from, 0, 8 * (size_t)(picture->width - from));
+	const uint32_t from = (uint32_t)(share * picture->width), count = picture->width - from;
+	for (uint32_t y = 0; y < picture->height; y++) {
+		memset(picture_row(picture, PURSUIT_ROLE_MOTION, y) + 8 * (size_t)from, 0, 8 * (size_t)count);
+		for (uint32_t role = PURSUIT_ROLE_COLOR; role <= PURSUIT_ROLE_DEPTH && picture != first; role++)
+			memcpy(picture_row(picture, role, y) + 4 * (size_t)from, picture_row(first, role, y) + 4 * (size_t)from,
+				   4 * (size_t)count);
+	}
+}
+
+static void print_fit(const char *name, const char *what, const struct line *line)
+{
+	const double slope = (line->n * line->xy - line->x * line->y) / (line->n * line->xx - line->x * line->x);
+	printf("%s/fit of the %s: %.2f ms + %.2f ms x share\n", name, what, (line->y - slope * line->x) / line->n, slope);
 }
 
 static void run(const char *context, const char *method, uint32_t width, uint32_t height, uint32_t n)
 {
 	struct engine *engine = bench_engine(context, method);
-	struct line line = {0};
+	struct line line = {0}, cpu = {0};
 	for (uint32_t step = 0; step <= STEPS; step++) {
 		struct picture pictures[PICTURES];
 		struct frame frames[PICTURES];
@@ -49,7 +59,7 @@ static void run(const char *context, const char *method, uint32_t width, uint32_
 		for (uint32_t i = 0; i < PICTURES; i++) {
 			picture_init(&pictures[i], width, height, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
 			picture_draw_layers(&pictures[i], i);
-			still(&pictures[i], share);
+			still(&pictures[i], &pictures[0], share);
 			frames[i] = pictures[i].frame;
 		}
 		struct bench_times times = bench_time(engine, frames, PICTURES, n, false);
@@ -57,12 +67,15 @@ static void run(const char *context, const char *method, uint32_t width, uint32_
 			   times.median, times.least, times.cpu, times.copy);
 		fflush(stdout);
 		add(&line, share, times.least);
+		add(&cpu, share, times.cpu);
 		for (uint32_t i = 0; i < PICTURES; i++)
 			picture_finish(&pictures[i]);
 	}
-	double slope = (line.n * line.xy - line.x * line.y) / (line.n * line.xx - line.x * line.x);
-	printf("share/%ux%u/n%u/fit of the least: %.2f ms + %.2f ms x share; memory at most %.0f MB\n", width, height, n,
-		   (line.y - slope * line.x) / line.n, slope, bench_most_memory());
+	char name[64];
+	snprintf(name, sizeof(name), "share/%ux%u/n%u", width, height, n);
+	print_fit(name, "least", &line);
+	print_fit(name, "cpu", &cpu);
+	printf("%s/memory at most %.0f MB\n", name, bench_most_memory());
 	engine_destroy(&engine);
 }
 
@@ -72,7 +85,7 @@ static void rest(const char *context, const char *method, uint32_t width, uint32
 	struct picture picture;
 	picture_init(&picture, width, height, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
 	picture_draw_layers(&picture, 0.0);
-	still(&picture, 0.0);
+	still(&picture, &picture, 0.0);
 	for (int unchanged = 0; unchanged < 2; unchanged++) {
 		struct bench_times times = bench_time(engine, &picture.frame, 1, 2, unchanged);
 		printf("still/%ux%u/n2/%s %.3f ms  least %.3f  cpu %.3f  memcpy %.2f\n", width, height,
@@ -85,9 +98,16 @@ static void rest(const char *context, const char *method, uint32_t width, uint32
 int main(int argc, char **argv)
 {
 	const char *context = argc > 1 ? argv[1] : "cpu", *method = argc > 2 ? argv[2] : NULL;
-	rest(context, method, 1920, 1080);
-	run(context, method, 640, 360, 2);
-	run(context, method, 1024, 1024, 3);
-	run(context, method, 1920, 1080, 2);
+	static const struct size {
+		uint32_t width, height, n;
+	} sizes[] = {{640, 360, 2}, {1024, 1024, 3}, {1920, 1080, 2}};
+	if (argc <= 3)
+		rest(context, method, 1920, 1080);
+	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
+		char name[32];
+		snprintf(name, sizeof(name), "%ux%u", sizes[i].width, sizes[i].height);
+		if (argc <= 3 || strcmp(argv[3], name) == 0)
+			run(context, method, sizes[i].width, sizes[i].height, sizes[i].n);
+	}
 	return 0;
 }
