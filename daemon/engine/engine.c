@@ -157,24 +157,26 @@ static int show(struct engine *engine, const struct engine_request *request, str
 	double phase = isnan(request->phase) ? 0.0 : fmin(fmax(request->phase, -1.0), 8.0);
 	enum picture_id picture = PICTURE_ORIGINAL;
 	engine->job.image = image;
-	const uint64_t held = image->holds;
+	engine->job.held = image->holds;
 	image->holds = 0;
 	int result = engine->method->show(engine, request->show, phase, &picture, error);
 	if (result < 0)
 		return result;
 	engine->job.picture = picture;
+	engine->job.holds = picture == PICTURE_ORIGINAL ? engine->content : 0;
 	const enum pass_id leave = image->data ? PASS_READ : PASS_COPY;
 	const bool leaves = image->data || image->texture;
-	if (picture == PICTURE_ORIGINAL && leaves && held == engine->content) {
+	if (leaves && engine->job.holds && engine->job.holds == engine->job.held) {
 		report_leave_out(&engine->report, leave == PASS_READ ? "read" : "copy", "unchanged");
-		image->holds = held;
+		engine->report.bytes_kept += 4 * (uint64_t)engine->width * engine->height;
+		image->holds = engine->job.holds;
 		return 0;
 	}
 	result = pass_run(engine, PASS_UI, error);
 	if (result == 0 && leaves)
 		result = pass_run(engine, leave, error);
 	if (result == 0 && leaves)
-		image->holds = picture == PICTURE_ORIGINAL ? engine->content : 0;
+		image->holds = engine->job.holds;
 	else
 		engine->executor->ops->flush(engine->executor);
 	return result;

@@ -116,9 +116,9 @@ struct engine_image {
 	uint8_t *data; /* caller's memory, stride x height bytes; NULL: to `texture`, or only to the engine's own picture */
 	size_t stride; /* bytes, at least 4 x width, a multiple of 4 */
 	/*
-	 * What memory or texture holds, as engine_render() left it here; 0: unknown, which is always right. If it holds
-	 * just the picture that is asked for nothing is written: keep it with the memory, set it to 0 where something else
-	 * is written.
+	 * What memory or texture holds, as engine_render() left it here; 0: unknown, which is always right. What it holds
+	 * already of the picture that is asked for, as a whole or by tiles, is not written: keep it with the memory, set it
+	 * to 0 where something else is written.
 	 */
 	uint64_t holds;
 	/*
@@ -158,6 +158,7 @@ struct engine_report {
 	uint32_t vertices, triangles, snapped, folded, doubtful;
 	uint64_t invalid_pixels;
 	uint64_t bytes_up, bytes_down;
+	uint64_t bytes_kept;   /* of displayed pictures that were there already: neither written nor in bytes_down */
 	uint64_t memory_bytes; /* that pictures and buffers take now, in GL's memory if it draws with GL; 0: not counted */
 	uint64_t plan_bytes;   /* of the process that the plan, its triangles and what a method keeps by pixel take now */
 };

@@ -23,6 +23,7 @@ struct job {
 	double phase;               /* warp */
 	enum picture_id picture;    /* warp, ui, read: what they take */
 	struct engine_image *image; /* engine_render() only; an executor may make SHOWN right there */
+	uint64_t held, holds;       /* read: what the image held, and holds then, as struct engine_image says */
 	/* paint: fills engine->pixels.shown; 0 or a negative errno with a sentence */
 	int (*paint)(struct engine *engine, struct error *error);
 };

@@ -11,9 +11,6 @@
 #include "daemon/engine/now.h"
 #include "daemon/engine/pass.h"
 
-/* Rows that one item of a copy takes. */
-#define COPY_ROWS 32u
-
 static struct executor_cpu *self(struct executor *executor)
 {
 	return (struct executor_cpu *)executor;
@@ -21,6 +18,7 @@ static struct executor_cpu *self(struct executor *executor)
 
 static int enter(struct executor *executor, struct error *error)
 {
+	self(executor)->sheet_is_open = false;
 	return 0;
 }
 
@@ -33,6 +31,7 @@ static void destroy(struct executor **executor)
 	for (int i = 0; i < MAX_LEVELS; i++)
 		canvas_finish(&gone->levels[i]);
 	layers_finish(&gone->layers);
+	contents_finish(&gone->contents);
 	scene_finish(&gone->scene);
 	free(gone->scratch);
 	free(gone->weights.values);
@@ -50,6 +49,7 @@ static void keep_original(struct executor *executor)
 	struct canvas kept = cpu->pictures[PICTURE_ORIGINAL];
 	cpu->pictures[PICTURE_ORIGINAL] = cpu->pictures[PICTURE_PREVIOUS];
 	cpu->pictures[PICTURE_PREVIOUS] = kept;
+	cpu->contents.known = false;
 }
 
 static void flush(struct executor *executor)
@@ -81,7 +81,8 @@ static uint64_t count_bytes(const struct executor_cpu *executor)
 		bytes += executor->pictures[i].capacity;
 	for (int i = 0; i < MAX_LEVELS; i++)
 		bytes += executor->levels[i].capacity;
-	return bytes + layers_bytes(&executor->layers) + scene_bytes(&executor->scene) + executor->weights.capacity +
+	bytes += layers_bytes(&executor->layers) + contents_bytes(&executor->contents);
+	return bytes + scene_bytes(&executor->scene) + executor->weights.capacity +
 		   executor->intake.bounds_capacity * sizeof(*executor->intake.bounds) +
 		   executor->intake.hashes_capacity * sizeof(*executor->intake.hashes);
 }
@@ -184,34 +185,57 @@ const struct canvas *cpu_picture(struct engine *engine, enum picture_id id)
 	return &executor->pictures[PICTURE_ORIGINAL];
 }
 
-int cpu_shown(struct engine *engine, struct rows *shown, struct error *error)
+int cpu_shown(struct engine *engine, const struct sheet **shown, struct error *error)
 {
+	struct executor_cpu *executor = cpu_of(engine);
 	const struct engine_image *image = engine->job.image;
-	if (image && image->data) {
-		*shown = (struct rows){image->data, image->stride};
+	const bool given = image && image->data;
+	struct canvas *own = &executor->pictures[PICTURE_SHOWN];
+	*shown = &executor->sheet;
+	if (executor->sheet_is_open)
 		return 0;
-	}
-	struct canvas *own = &cpu_of(engine)->pictures[PICTURE_SHOWN];
-	int result = canvas_resize(own, engine->width, engine->height, error);
-	*shown = (struct rows){own->pixels, own->stride};
-	return result;
+	if (!given && canvas_resize(own, engine->width, engine->height, error) < 0)
+		return -ENOMEM;
+	const bool keeps = given && !engine->params.leave_nothing_out;
+	contents_open(&executor->contents, keeps ? engine->job.held : 0, &executor->sheet);
+	executor->sheet.data = given ? image->data : own->pixels;
+	executor->sheet.stride = given ? image->stride : own->stride;
+	executor->sheet_is_open = true;
+	return 0;
 }
 
 struct copy {
+	const struct contents *contents;
+	enum picture_id id;
 	const struct canvas *from;
-	const struct rows *to;
+	const struct sheet *to;
 };
 
-static void copy_rows(void *context, uint32_t item, uint32_t thread)
+/* Tiles `first` to `end` - 1 of a row of them. */
+static void copy_tiles(const struct copy *copy, uint32_t row, uint32_t first, uint32_t end)
 {
-	const struct copy *copy = context;
-	uint32_t end = (item + 1) * COPY_ROWS;
-	for (uint32_t y = item * COPY_ROWS; y < end && y < copy->from->height; y++)
-		memcpy(copy->to->data + y * copy->to->stride, canvas_row(copy->from, y), 4 * (size_t)copy->from->width);
+	const uint32_t left = first * TILE_WIDTH, width = copy->from->width - left, most = (end - first) * TILE_WIDTH;
+	for (uint32_t y = row * TILE_HEIGHT; y < (row + 1) * TILE_HEIGHT && y < copy->from->height; y++)
+		memcpy(copy->to->data + y * copy->to->stride + 4 * (size_t)left, canvas_row(copy->from, y) + 4 * (size_t)left,
+			   4 * (size_t)(width < most ? width : most));
 }
 
-void cpu_copy(struct executor_cpu *executor, const struct canvas *from, const struct rows *to)
+static void copy_row(void *context, uint32_t row, uint32_t thread)
 {
-	struct copy copy = {from, to};
-	pool_run(executor->base.pool, copy_rows, &copy, (from->height + COPY_ROWS - 1) / COPY_ROWS);
+	const struct copy *copy = context;
+	const uint32_t columns = copy->contents->columns;
+	for (uint32_t column = 0; column < columns; column++) {
+		const uint32_t first = column;
+		for (uint32_t tile = row * columns + column; column < columns; column++, tile++)
+			if (sheet_has(copy->to, tile, contents_of(copy->contents, copy->id, tile)))
+				break;
+		if (first < column)
+			copy_tiles(copy, row, first, column);
+	}
+}
+
+void cpu_copy(struct executor_cpu *executor, enum picture_id id, const struct canvas *from)
+{
+	struct copy copy = {&executor->contents, id, from, &executor->sheet};
+	pool_run(executor->base.pool, copy_row, &copy, executor->contents.rows);
 }

@@ -11,18 +11,13 @@
 
 #include "daemon/engine/cpu/bins.h"
 #include "daemon/engine/cpu/canvas.h"
+#include "daemon/engine/cpu/contents.h"
 #include "daemon/engine/cpu/layers.h"
 #include "daemon/engine/cpu/levels.h"
 #include "daemon/engine/cpu/light.h"
 #include "daemon/engine/cpu/weights.h"
 #include "daemon/engine/pool.h"
 #include "daemon/engine/state.h"
-
-/* Rows of a picture, wherever they lie. */
-struct rows {
-	uint8_t *data;
-	size_t stride;
-};
 
 /* The planes on their way in: a task of the pool that runs while the frame is analysed. */
 struct intake {
@@ -54,6 +49,9 @@ struct executor_cpu {
 	struct canvas pictures[PICTURE_COUNT];
 	struct canvas levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
 	struct layers layers;
+	struct contents contents;
+	struct sheet sheet; /* where SHOWN is made */
+	bool sheet_is_open; /* in this engine_render() */
 	struct weights weights;
 	struct light light;
 	struct scene scene;
@@ -71,10 +69,10 @@ static inline struct executor_cpu *cpu_of(const struct engine *engine)
 const struct canvas *cpu_picture(struct engine *engine, enum picture_id id);
 
 /* Where SHOWN is made: in the caller's image if there is one, else in memory of our own. 0 or -ENOMEM. */
-int cpu_shown(struct engine *engine, struct rows *shown, struct error *error);
+int cpu_shown(struct engine *engine, const struct sheet **shown, struct error *error);
 
-/* Copies a picture as large as the frame to rows. */
-void cpu_copy(struct executor_cpu *executor, const struct canvas *from, const struct rows *to);
+/* Copies a picture as large as the frame to where SHOWN is made, but for tiles that are there; `id`: what it is. */
+void cpu_copy(struct executor_cpu *executor, enum picture_id id, const struct canvas *from);
 
 /* Waits until the frame's planes have been taken. */
 void cpu_finish_intake(struct engine *engine);

@@ -9,10 +9,10 @@ static int run(struct engine *engine, struct error *error)
 	const struct bitmap *from = &engine->pixels.shown;
 	const struct canvas picture = {
 		.width = from->width, .height = from->height, .stride = 4 * (size_t)from->width, .pixels = from->data};
-	struct rows shown;
+	const struct sheet *shown;
 	int result = cpu_shown(engine, &shown, error);
 	if (result == 0)
-		cpu_copy(cpu_of(engine), &picture, &shown);
+		cpu_copy(cpu_of(engine), PICTURE_SHOWN, &picture);
 	return result;
 }
 

@@ -21,17 +21,71 @@
 /* Frames that are not looked at, after one that was and differed. */
 #define LOOK_AGAIN_AFTER 15u
 
+static size_t pixel_bytes(const struct pursuit_plane *plane)
+{
+	return plane->format == PURSUIT_FORMAT_RGBA16F ? 8 : 4;
+}
+
 /* Is the row as it was in the frame before? Only that of a frame that is looked at may be. */
 static bool as_it_was(struct intake *intake, uint32_t row, const uint8_t *from, const struct pursuit_plane *plane)
 {
 	if (!intake->looks || atomic_load_explicit(&intake->differs, memory_order_relaxed))
 		return false;
-	const size_t pixel_bytes = plane->format == PURSUIT_FORMAT_RGBA16F ? 8 : 4;
-	const uint64_t hash = row_hash(from, pixel_bytes * plane->width), before = intake->hashes[row];
+	const uint64_t hash = row_hash(from, pixel_bytes(plane) * plane->width), before = intake->hashes[row];
 	intake->hashes[row] = hash;
 	if (intake->compares && hash != before)
 		atomic_store_explicit(&intake->differs, true, memory_order_relaxed);
 	return intake->compares && hash == before;
+}
+
+/* A row on its way in. */
+struct row {
+	struct contents *contents;
+	const struct convert *convert;
+	const uint8_t *from;
+	size_t pixel_bytes;
+	uint8_t *to; /* of the canvas */
+	uint32_t width, first_tile;
+	bool opaque, outermost; /* the first or the last of the picture */
+};
+
+static void convert_part(const struct row *row, uint8_t *to, uint32_t left, uint32_t right)
+{
+	convert_row(row->convert, to, row->from + row->pixel_bytes * left, right - left, row->opaque);
+}
+
+/* The part of a row in a tile that may be as it was; true if it was not. Each pixel is read once. */
+static bool put_tile(const struct row *row, uint32_t left, uint32_t right)
+{
+	uint8_t pixels[4 * TILE_WIDTH], *to = row->to + 4 * (size_t)left;
+	const size_t bytes = 4 * (size_t)(right - left);
+	convert_part(row, pixels, left, right);
+	if (memcmp(to, pixels, bytes) == 0)
+		return false;
+	memcpy(to, pixels, bytes);
+	contents_change(row->contents, row->first_tile + left / TILE_WIDTH);
+	return true;
+}
+
+/* Nothing is written where nothing differs; true if something does on the border of the picture. */
+static bool put_row(const struct row *row)
+{
+	bool border = false;
+	for (uint32_t left = 0, right; left < row->width; left = right) {
+		right = left;
+		while (right < row->width && contents_changed(row->contents, row->first_tile + right / TILE_WIDTH))
+			right += TILE_WIDTH;
+		right = right < row->width ? right : row->width;
+		bool differs = left < right;
+		if (differs) {
+			convert_part(row, row->to + 4 * (size_t)left, left, right);
+		} else {
+			right = row->width - left < TILE_WIDTH ? row->width : left + TILE_WIDTH;
+			differs = put_tile(row, left, right);
+		}
+		border |= differs && (row->outermost || left == 0 || right == row->width);
+	}
+	return border;
 }
 
 static void take_rows(struct engine *engine, enum picture_id id, uint32_t item)
@@ -39,20 +93,25 @@ static void take_rows(struct engine *engine, enum picture_id id, uint32_t item)
 	struct intake *intake = &cpu_of(engine)->intake;
 	bool opaque = id == PICTURE_ORIGINAL;
 	int index = opaque ? intake->color : intake->ui;
-	const struct convert *convert = opaque ? &engine->color_convert : &engine->ui_convert;
 	const struct pursuit_plane *plane = &engine->job.frame->header.planes[index];
 	const struct canvas *canvas = &cpu_of(engine)->pictures[id];
+	struct row row = {.contents = &cpu_of(engine)->contents,
+					  .convert = opaque ? &engine->color_convert : &engine->ui_convert,
+					  .pixel_bytes = pixel_bytes(plane),
+					  .width = plane->width,
+					  .opaque = opaque};
 	struct bounds bounds = {0};
 	for (uint32_t y = item * ROWS_OF_ITEM; y < (item + 1) * ROWS_OF_ITEM && y < plane->height; y++) {
 		if (opaque && !planes_changed(engine, y, 1))
 			continue;
-		const uint8_t *from = engine->job.frame->planes[index] + (size_t)y * plane->stride;
-		const bool same = as_it_was(intake, opaque ? y : intake->engine->height + y, from, plane);
-		if (!same)
-			convert_row(convert, canvas_row(canvas, y), from, plane->width, opaque);
-		if (opaque && !same)
+		row.from = engine->job.frame->planes[index] + (size_t)y * plane->stride;
+		row.to = canvas_row(canvas, y);
+		row.outermost = y == 0 || y + 1 == plane->height;
+		row.first_tile = y / TILE_HEIGHT * row.contents->columns;
+		const bool same = as_it_was(intake, opaque ? y : engine->height + y, row.from, plane);
+		if (!same && put_row(&row) && opaque)
 			canvas_close_row(canvas, y);
-		else if (!opaque)
+		if (!opaque)
 			bounds_widen(&bounds, canvas_row(canvas, y), plane->width, y);
 	}
 	if (!opaque)
@@ -110,6 +169,24 @@ static void conclude_look(struct engine *engine, struct intake *intake)
 	report_leave_out(&engine->report, "upload", "unchanged");
 }
 
+/* If there is none, nobody knows what is where. */
+static int make_room(struct engine *engine, struct intake *intake, uint32_t items, struct error *error)
+{
+	struct executor_cpu *executor = cpu_of(engine);
+	const bool ui = intake->ui >= 0;
+	int result = canvas_resize(&executor->pictures[PICTURE_ORIGINAL], engine->width, engine->height, error);
+	if (result == 0 && ui)
+		result = canvas_resize(&executor->pictures[PICTURE_UI], engine->width, engine->height, error);
+	if (result == 0)
+		result = reserve(intake, items, error);
+	if (result == 0)
+		result = contents_begin(&executor->contents, engine->width, engine->height, ui, engine->content,
+								&executor->layers, error);
+	if (result < 0)
+		executor->contents.known = false;
+	return result;
+}
+
 static int run(struct engine *engine, struct error *error)
 {
 	struct executor_cpu *executor = cpu_of(engine);
@@ -120,16 +197,13 @@ static int run(struct engine *engine, struct error *error)
 	uint32_t items = (engine->height + ROWS_OF_ITEM - 1) / ROWS_OF_ITEM;
 	if (engine->damage.known)
 		cpu_picture(engine, PICTURE_ORIGINAL);
-	layers_clear(&executor->layers);
 	if (!planes_changed(engine, 0, engine->height)) {
+		layers_clear(&executor->layers);
 		report_leave_out(&engine->report, "upload", "unchanged");
 		return 0;
 	}
-	result = canvas_resize(&executor->pictures[PICTURE_ORIGINAL], engine->width, engine->height, error);
-	if (result == 0 && intake->ui >= 0)
-		result = canvas_resize(&executor->pictures[PICTURE_UI], engine->width, engine->height, error);
-	if (result == 0)
-		result = reserve(intake, items, error);
+	result = make_room(engine, intake, items, error);
+	layers_clear(&executor->layers);
 	if (result < 0)
 		return result;
 	plan_look(engine, intake);

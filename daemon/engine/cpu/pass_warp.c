@@ -14,8 +14,7 @@ static int run(struct engine *engine, struct error *error)
 {
 	struct executor_cpu *executor = cpu_of(engine);
 	struct scene *scene = &executor->scene;
-	struct rows shown;
-	int result = cpu_shown(engine, &shown, error);
+	int result = cpu_shown(engine, &scene->sheet, error);
 	scene->mesh = &engine->mesh;
 	scene->phase = (float)engine->job.phase;
 	scene->tolerance = engine->params.leave_nothing_out ? -1.0f : engine->mesh.tolerance;
@@ -27,8 +26,8 @@ static int run(struct engine *engine, struct error *error)
 		return result;
 	scene->picture = cpu_picture(engine, engine->job.picture);
 	scene->low = cpu_picture(engine, PICTURE_LOW);
-	scene->out = shown.data;
-	scene->stride = shown.stride;
+	scene->contents = &executor->contents;
+	scene->id = engine->job.picture;
 	pool_run(executor->base.pool, draw, executor, scene_tiles(scene));
 	return 0;
 }

@@ -13,6 +13,7 @@
 #include <stdint.h>
 
 #include "daemon/engine/cpu/canvas.h"
+#include "daemon/engine/cpu/contents.h"
 #include "daemon/engine/warp_mesh.h"
 
 /* Wide enough for long stores, small enough for the coordinates of a tile to stay in a core's first cache. */
@@ -42,8 +43,9 @@ struct scene {
 	struct bins bins;
 	/* What is drawn, and where. */
 	const struct canvas *picture, *low;
-	uint8_t *out;
-	size_t stride;
+	enum picture_id id; /* the picture's */
+	const struct contents *contents;
+	const struct sheet *sheet;
 	uint32_t width, height;
 	bool check; /* for tests: count in each scratch what is left uncovered */
 };

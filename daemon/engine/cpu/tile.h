@@ -276,23 +276,23 @@ static inline bool is_uniform(const struct scene *scene, const struct bin *bin, 
 
 /* The tile's pixels in the displayed picture. */
 struct area {
-	uint32_t left, top, width, height;
+	uint32_t tile, left, top, width, height;
 };
 
 static inline struct area area_of(const struct scene *scene, uint32_t tile)
 {
 	uint32_t left = tile % scene->bins.columns * TILE_WIDTH, top = tile / scene->bins.columns * TILE_HEIGHT;
 	uint32_t width = scene->width - left, height = scene->height - top;
-	return (struct area){left, top, width < TILE_WIDTH ? width : TILE_WIDTH,
+	return (struct area){tile, left, top, width < TILE_WIDTH ? width : TILE_WIDTH,
 						 height < TILE_HEIGHT ? height : TILE_HEIGHT};
 }
 
 static inline uint8_t *out_row(const struct scene *scene, const struct area *area, uint32_t row)
 {
-	return scene->out + (area->top + row) * scene->stride + 4 * (size_t)area->left;
+	return scene->sheet->data + (area->top + row) * scene->sheet->stride + 4 * (size_t)area->left;
 }
 
-/* A copy from one place of the picture; false if that is not all within it and its border. */
+/* A copy from one place of the picture, unless it is there; false if that is not all within it and its border. */
 static bool shift_tile(const struct scene *scene, const struct area *area, float ux, float uy)
 {
 	const struct canvas *picture = scene->picture;
@@ -307,6 +307,9 @@ static bool shift_tile(const struct scene *scene, const struct area *area, float
 		y + (int32_t)area->height + 1 > height + border)
 		return false;
 	uint32_t fx = pixel_weight(dx), fy = pixel_weight(dy);
+	const bool stays = x == (int32_t)area->left && y == (int32_t)area->top && fx == 0 && fy == 0;
+	if (stays && sheet_has(scene->sheet, area->tile, contents_of(scene->contents, scene->id, area->tile)))
+		return true;
 	for (uint32_t row = 0; row < area->height; row++) {
 		const uint8_t *upper = canvas_row(picture, y + (int32_t)row) + 4 * (ptrdiff_t)x;
 		const uint8_t *lower = upper + picture->stride;
