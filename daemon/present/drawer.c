@@ -12,16 +12,17 @@
 
 #include "daemon/present/blit.h"
 #include "daemon/present/glx_sync.h"
+#include "daemon/worker.h"
 
 #define SECOND UINT64_C(1000000000)
 
 struct drawer {
 	struct window *window;
 	struct clock *clock;
-	pthread_t thread;
+	struct worker *worker;
 	pthread_mutex_t lock; /* for what is between here and there */
 	pthread_cond_t wake, done;
-	bool stop, started, under_way, ended, left;
+	bool stop, started, under_way;
 	void (*gone)(void *data); /* whose this is, once it is left */
 	void *gone_data;
 	int start_result;
@@ -136,27 +137,13 @@ static void carry_out_orders(struct drawer *drawer)
 	pthread_mutex_unlock(&drawer->lock);
 }
 
-static void on_end(void *data)
-{
-	struct drawer *drawer = data;
-	pthread_mutex_lock(&drawer->lock);
-	drawer->ended = true;
-	const bool left = drawer->left;
-	pthread_mutex_unlock(&drawer->lock);
-	if (!left)
-		return;
-	drawer->gone(drawer->gone_data);
-	free_drawer(drawer);
-}
-
-static void *run(void *data)
+static void run(void *data)
 {
 	struct drawer *drawer = data;
 	struct error error = {""};
 	int result;
 	pthread_setname_np(pthread_self(), "pursuit-swap");
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
-	pthread_cleanup_push(on_end, drawer);
 	pthread_cleanup_push(on_exit_in_start, drawer);
 	result = start(drawer, &error);
 	pthread_cleanup_pop(0);
@@ -165,8 +152,6 @@ static void *run(void *data)
 		carry_out_orders(drawer);
 	blit_finish(&drawer->blit);
 	window_let_go(drawer->window);
-	pthread_cleanup_pop(1);
-	return NULL;
 }
 
 /* ---- whoever orders ---- */
@@ -187,9 +172,9 @@ struct drawer *drawer_create(struct window *window, struct clock *clock, struct 
 	pthread_cond_init(&drawer->wake, &attributes);
 	pthread_cond_init(&drawer->done, &attributes);
 	pthread_condattr_destroy(&attributes);
-	const int result = pthread_create(&drawer->thread, NULL, run, drawer);
-	if (result != 0) {
-		error_set(error, -result, "glfw: cannot start a thread: %s", strerror(result));
+	const int result = worker_create(&drawer->worker, run, drawer);
+	if (result < 0) {
+		error_set(error, result, "glfw: cannot start a thread: %s", strerror(-result));
 		free_drawer(drawer);
 		return NULL;
 	}
@@ -213,37 +198,27 @@ int drawer_wait_for_start(struct drawer *drawer, struct error *error)
 	return result;
 }
 
-/* It did not end within a second; perhaps it does now. */
-static bool leave(struct drawer *drawer, void (*gone)(void *data), void *data)
+static void on_gone(void *data)
 {
-	pthread_mutex_lock(&drawer->lock);
-	const bool left = drawer->left = !drawer->ended;
-	drawer->gone = gone;
-	drawer->gone_data = data;
-	if (left)
-		pthread_detach(drawer->thread);
-	pthread_mutex_unlock(&drawer->lock);
-	return left;
+	struct drawer *drawer = data;
+	drawer->gone(drawer->gone_data);
+	free_drawer(drawer);
 }
 
 bool drawer_destroy(struct drawer **drawer, void (*gone)(void *data), void *data)
 {
 	struct drawer *self = *drawer;
-	struct timespec until;
 	*drawer = NULL;
 	if (!self)
 		return true;
 	pthread_mutex_lock(&self->lock);
 	self->stop = true;
+	self->gone = gone;
+	self->gone_data = data;
 	pthread_cond_signal(&self->wake);
 	pthread_mutex_unlock(&self->lock);
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_sec++;
-	if (pthread_clockjoin_np(self->thread, NULL, CLOCK_MONOTONIC, &until) != 0) {
-		if (leave(self, gone, data))
-			return false;
-		pthread_join(self->thread, NULL);
-	}
+	if (!worker_destroy(&self->worker, SECOND, on_gone))
+		return false;
 	free_drawer(self);
 	return true;
 }

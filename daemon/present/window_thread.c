@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/worker.h"
+
 #define SECOND UINT64_C(1000000000)
 #define STOP_NS (2 * SECOND)
 /* Events may have been read from the connection by another thread; then no descriptor tells of them. */
@@ -21,13 +23,13 @@
 
 struct window_thread {
 	struct window_work work;
-	pthread_t thread;
+	struct worker *worker;
 	int wake_fd;
 	_Atomic uint64_t busy_since_ns; /* 0: it waits for something to do */
 
 	pthread_mutex_t lock; /* for what follows */
 	pthread_cond_t change;
-	bool opened, stop, ended, left, mute;
+	bool opened, stop, mute;
 	int result;
 	struct error error;
 };
@@ -39,8 +41,9 @@ static uint64_t now_ns(void)
 	return (uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec;
 }
 
-static void free_thread(struct window_thread *thread)
+static void free_thread(void *data)
 {
+	struct window_thread *thread = data;
 	thread->work.release(thread->work.data);
 	if (thread->wake_fd >= 0)
 		close(thread->wake_fd);
@@ -59,17 +62,6 @@ static void say_opened(struct window_thread *thread, int result, const struct er
 	thread->error = *error;
 	pthread_cond_signal(&thread->change);
 	pthread_mutex_unlock(&thread->lock);
-}
-
-static void say_ended(struct window_thread *thread)
-{
-	pthread_mutex_lock(&thread->lock);
-	const bool left = thread->left;
-	thread->ended = true;
-	pthread_cond_signal(&thread->change);
-	pthread_mutex_unlock(&thread->lock);
-	if (left)
-		free_thread(thread);
 }
 
 static bool is_to_stop(struct window_thread *thread)
@@ -91,7 +83,7 @@ static void wait_for_work(struct window_thread *thread, bool more)
 	}
 }
 
-static void *run(void *data)
+static void run(void *data)
 {
 	struct window_thread *thread = data;
 	const struct window_work *work = &thread->work;
@@ -107,8 +99,6 @@ static void *run(void *data)
 		more = work->process(work->data) && more;
 	}
 	work->close(work->data);
-	say_ended(thread);
-	return NULL;
 }
 
 /* ---- its owner ---- */
@@ -132,26 +122,18 @@ static struct window_thread *allocate(const struct window_work *work)
 	return thread;
 }
 
-/* With the lock: until *flag, at most limit_ns. */
-static bool wait_for(struct window_thread *thread, const bool *flag, uint64_t limit_ns)
+static int wait_for_open(struct window_thread *thread, uint64_t limit_ns, struct error *error)
 {
 	const uint64_t until_ns = now_ns() + limit_ns;
 	const struct timespec until = {(time_t)(until_ns / SECOND), (long)(until_ns % SECOND)};
-	while (!*flag && pthread_cond_timedwait(&thread->change, &thread->lock, &until) != ETIMEDOUT)
-		;
-	return *flag;
-}
-
-static int wait_for_open(struct window_thread *thread, uint64_t limit_ns, struct error *error)
-{
 	pthread_mutex_lock(&thread->lock);
-	int result = -ETIMEDOUT;
-	if (!wait_for(thread, &thread->opened, limit_ns)) {
-		error_set(error, result, "glfw: the display server does not answer");
-	} else {
-		result = thread->result;
+	while (!thread->opened && pthread_cond_timedwait(&thread->change, &thread->lock, &until) != ETIMEDOUT)
+		;
+	const int result = thread->opened ? thread->result : -ETIMEDOUT;
+	if (thread->opened)
 		*error = thread->error;
-	}
+	else
+		error_set(error, result, "glfw: the display server does not answer");
 	pthread_mutex_unlock(&thread->lock);
 	return result;
 }
@@ -162,11 +144,11 @@ int window_thread_start(const struct window_work *work, uint64_t limit_ns, struc
 	struct window_thread *self = *thread = allocate(work);
 	if (!self)
 		return error_set(error, -ENOMEM, "glfw: out of memory");
-	int result = self->wake_fd < 0 ? EMFILE : pthread_create(&self->thread, NULL, run, self);
-	if (result != 0) {
+	int result = self->wake_fd < 0 ? -EMFILE : worker_create(&self->worker, run, self);
+	if (result < 0) {
 		free_thread(self);
 		*thread = NULL;
-		return error_set(error, -result, "glfw: cannot start a thread: %s", strerror(result));
+		return error_set(error, result, "glfw: cannot start a thread: %s", strerror(-result));
 	}
 	result = wait_for_open(self, limit_ns, error);
 	if (result < 0)
@@ -182,18 +164,14 @@ void window_thread_stop(struct window_thread **thread)
 		return;
 	pthread_mutex_lock(&self->lock);
 	self->stop = self->mute = true;
-	window_thread_wake(self);
 	/* Who has waited for it to open need not wait again. */
-	const bool left = self->left = !wait_for(self, &self->ended, self->opened ? STOP_NS : 0);
-	if (left)
-		pthread_detach(self->thread);
+	const uint64_t patience_ns = self->opened ? STOP_NS : 0;
 	pthread_mutex_unlock(&self->lock);
-	if (left) {
+	window_thread_wake(self);
+	if (worker_destroy(&self->worker, patience_ns, free_thread))
+		free_thread(self);
+	else
 		window_thread_leave_at_exit();
-		return;
-	}
-	pthread_join(self->thread, NULL);
-	free_thread(self);
 }
 
 void window_thread_wake(struct window_thread *thread)
