@@ -411,10 +411,10 @@ void draw_empty(struct render *render, uint64_t vblank)
 	image.holds = 0;
 	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
 	view_draw(render, &image);
-	if (queue(render, &image, vblank, STATS_REPEAT, 0.0) < 0)
+	render->front_black = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
+	render->front_plain &= !render->front_black;
+	if (!render->front_black)
 		impl->release(render->presenter, &image);
-	else
-		render->front_black = true;
 }
 
 void draw_held(struct render *render, uint64_t vblank)

@@ -12,6 +12,8 @@
 #define PLAIN_AFTER 30u
 /* And then the presenter sleeps, once that picture has been shown. */
 #define SLEEP_AFTER (PLAIN_AFTER + 4u)
+/* A picture that is to stay and misses its vblank, or finds no memory free, is drawn again so often. */
+#define STAY_TRIES 120u
 /* A presenter that is given some pictures and says nothing for so long and so many vblanks hangs. */
 #define STUCK_PICTURES 3u
 #define STUCK_NS UINT64_C(2000000000)
@@ -284,6 +286,29 @@ static bool fits_before_real(const struct render *render, uint64_t now_ns)
 
 /* ---- pauses ---- */
 
+/* Is the picture queued last one that may be looked at for long? */
+static bool shows_what_stays(const struct render *render)
+{
+	if (wants_black(render))
+		return render->front_black;
+	return render->front_plain || !render->begun || !render->engine;
+}
+
+static void draw_what_stays(struct render *render, uint64_t vblank)
+{
+	if (wants_black(render))
+		draw_empty(render, vblank);
+	else
+		draw_plain(render, vblank);
+}
+
+static void fall_asleep(struct render *render)
+{
+	render->presenter->impl->pause(render->presenter);
+	render->showing.last_target_ns = 0;
+	render->paused = true;
+}
+
 /* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */
 static void pause_once(struct render *render)
 {
@@ -295,16 +320,14 @@ static void pause_once(struct render *render)
 	if (render->pause_vblanks == PLAIN_AFTER) {
 		close_all_frames(render);
 		draw_count_report(render);
-		if (wants_black(render) && !render->front_black)
-			draw_empty(render, vblank);
-		else if (!wants_black(render) && !render->front_plain && render->begun && render->engine)
-			draw_plain(render, vblank);
+		render->stay_tries = 0;
 	}
-	if (render->pause_vblanks >= SLEEP_AFTER) {
-		render->presenter->impl->pause(render->presenter);
-		render->showing.last_target_ns = 0;
-		render->paused = true;
+	if (render->pause_vblanks >= PLAIN_AFTER && !shows_what_stays(render) && render->stay_tries++ < STAY_TRIES) {
+		draw_what_stays(render, vblank);
+		render->pause_vblanks = PLAIN_AFTER;
 	}
+	if (render->pause_vblanks >= SLEEP_AFTER)
+		fall_asleep(render);
 }
 
 /* The picture that stays is drawn again, as the view is now, or that of another stream; then all sleeps again. */
@@ -318,13 +341,12 @@ static void draw_still_anew(struct render *render, uint64_t now_ns)
 	if (vblank > render->next_vblank)
 		render->next_vblank = vblank;
 	render->pause_vblanks = PLAIN_AFTER;
-	render->paused = false;
+	render->stay_tries = 0;
+	render->paused = render->front_plain = render->front_black = false;
 	if (render->show_held)
 		draw_held(render, render->next_vblank);
-	else if (wants_black(render))
-		draw_empty(render, render->next_vblank);
 	else
-		draw_plain(render, render->next_vblank);
+		draw_what_stays(render, render->next_vblank);
 	render->show_held = false;
 	showing_plan(&render->showing, render->next_vblank++, SHOWING_PAUSE);
 }

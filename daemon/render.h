@@ -85,6 +85,7 @@ struct render {
 	uint64_t real_vblank;   /* of its first showing */
 	uint64_t next_vblank;   /* first one that was not decided */
 	uint32_t pause_vblanks; /* that nothing was due at, in a row */
+	uint32_t stay_tries;    /* to queue the picture that stays through the pause */
 	bool paused;            /* the presenter sleeps */
 	struct {
 		uint32_t pictures;          /* queued, or without room for them, since the last vblank that was reported */

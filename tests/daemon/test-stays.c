@@ -1,0 +1,161 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The picture that stays while nothing moves: one that missed its vblank is drawn again, and then all sleeps. The
+ * presenter is the headless one's memory and queue, on a virtual clock, and refuses what it is told to.
+ */
+#include <errno.h>
+#include <string.h>
+
+#include "daemon/present/pictures.h"
+#include "daemon/render.h"
+#include "tests/engine/picture.h"
+#include "tests/test.h"
+
+#define MS UINT64_C(1000000)
+
+static struct {
+	struct clock_virtual clock;
+	struct log log;
+	struct settings settings;
+	struct stats stats;
+	struct presenter_impl impl;
+	struct pictures pictures;
+	struct render render;
+	struct picture picture;
+	unsigned refusals, refused, taken;
+} world;
+
+static int present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
+				   uint64_t serial)
+{
+	if (world.refusals > 0) {
+		world.refusals--;
+		world.refused++;
+		return -ETIME;
+	}
+	world.taken++;
+	return pictures_present(presenter, image, vblank, group, serial);
+}
+
+static void on_engine(void *data, const struct engine_info *info)
+{
+	(void)data;
+	(void)info;
+}
+
+static void world_init(void)
+{
+	const struct presenter_params params = {
+		.clock = &world.clock.clock, .log = &world.log, .refresh_numerator = 120, .refresh_denominator = 1};
+	struct error error = {""};
+	memset(&world, 0, sizeof(world));
+	log_init(&world.log, LOG_LEVEL_ERROR);
+	clock_init_virtual(&world.clock, 1000 * MS);
+	settings_defaults(&world.settings);
+	CHECK_INT(settings_set(&world.settings, "context", "cpu", &error), 0);
+	world.impl = presenter_headless;
+	world.impl.present = present;
+	pictures_init(&world.pictures, &world.impl, &params);
+	struct render *render = &world.render;
+	*render = (struct render){.settings = &world.settings,
+							  .clock = &world.clock.clock,
+							  .log = &world.log,
+							  .stats = &world.stats,
+							  .owner = {.engine_made = on_engine}};
+	CHECK_INT(render_start(render, &error), 0);
+	render_set_presenter(render, &world.pictures.presenter);
+}
+
+static void world_finish(void)
+{
+	render_finish(&world.render);
+	pictures_finish(&world.pictures);
+	if (world.picture.memory)
+		picture_finish(&world.picture);
+}
+
+/* What is due within some vblanks is done, and each of them shown. */
+static void run(uint32_t vblanks)
+{
+	const struct grid *grid = &world.pictures.grid;
+	const uint64_t first = grid_at_or_after(grid, clock_now(&world.clock.clock)) + 1;
+	for (uint64_t vblank = first; vblank < first + vblanks; vblank++) {
+		const uint64_t vblank_ns = grid_time(grid, vblank);
+		for (uint32_t step = 0; step < 1000 && clock_now(&world.clock.clock) < vblank_ns; step++) {
+			const uint64_t next_ns = render_step(&world.render);
+			clock_wait_until(&world.clock.clock, next_ns < vblank_ns ? next_ns : vblank_ns);
+		}
+		if (world.pictures.running && world.pictures.next_vblank <= vblank)
+			pictures_show_next(&world.pictures, vblank_ns);
+	}
+}
+
+/* A boosted real frame is on display, and nothing comes after it. */
+static void show_boosted(void)
+{
+	const struct engine_begin_params params = {.n = 2, .last_phase = 0.5, .real_interval_ns = 16 * MS};
+	struct error error = {""};
+	picture_init(&world.picture, 64, 64, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
+	picture_draw_layers(&world.picture, 1.0);
+	struct frame frame = world.picture.frame;
+	frame.stream = frame.header.frame_id = 1;
+	CHECK_INT(engine_begin(world.render.engine, &frame, &params, &error), 0);
+	world.render.begun = true;
+	world.render.group = 1;
+	world.render.paused = false;
+}
+
+static void test_the_view_changes_while_nothing_moves(void)
+{
+	world_init();
+	run(10);
+	CHECK_INT(world.taken, 0);
+	const uint32_t views[] = {VIEW_HELP, 0};
+	for (unsigned i = 0; i < 2; i++) {
+		world.refusals = 3;
+		render_set_view(&world.render, views[i]);
+		run(60);
+		CHECK_INT(world.refusals, 0);
+		CHECK_INT(world.taken, i + 1);
+		CHECK(world.pictures.flips.has_front && world.pictures.flips.front.serial == world.render.serial);
+		CHECK(world.render.paused && !world.pictures.running);
+	}
+	world_finish();
+}
+
+static void test_a_boosted_picture_does_not_stay(void)
+{
+	world_init();
+	show_boosted();
+	world.refusals = 3;
+	run(100);
+	CHECK_INT(world.refused, 3);
+	CHECK_INT(world.taken, 1);
+	CHECK(world.render.front_plain && world.pictures.flips.front.serial == world.render.serial);
+	CHECK(world.render.paused && !world.pictures.running);
+	world_finish();
+}
+
+static void test_a_presenter_that_takes_nothing(void)
+{
+	world_init();
+	show_boosted();
+	world.refusals = 100000;
+	run(400);
+	CHECK(world.refused > 10 && world.refused < 200);
+	CHECK(world.render.paused);
+	const unsigned refused = world.refused;
+	run(400);
+	CHECK_INT(world.refused, refused);
+	world_finish();
+}
+
+int main(void)
+{
+	RUN(test_the_view_changes_while_nothing_moves);
+	RUN(test_a_boosted_picture_does_not_stay);
+	RUN(test_a_presenter_that_takes_nothing);
+	return test_result();
+}
