@@ -115,7 +115,9 @@ static const struct option_row rows[] = {
 		 "kms: device like /dev/dri/card1; empty: the first one that has a display."),
 	FLAG(lab.latency, "latency", OPTION_LAB, "no", "Keep all time points of each displayed frame for pursuit latency."),
 	TEXT(lab.latency_log, "latency-log", OPTION_LAB, "",
-		 "Write the time points of each displayed frame into this file: text for .csv, compact for .bin."),
+		 "Write the time points of each displayed frame into this file: text for .csv, compact for .bin. One that is "
+		 "there "
+		 "is kept as FILE.1, FILE.2 and so on."),
 	NUMBER(lab.priority, "lab-priority", OPTION_LAB, "20", 0, 99, "",
 		   "Real-time priority (SCHED_FIFO) of the thread that sets lines, where permitted; 0: none."),
 	TEXT(lab.gpio_chip, "gpio-chip", OPTION_LAB, "",
@@ -167,7 +169,9 @@ static const struct option_row rows[] = {
 	NUMBER(lab.patch_size, "patch-size", OPTION_LAB, "48", 4, 4096, "px", "Edge of the patch."),
 	TEXT(socket, "socket", OPTION_DAEMON, "",
 		 "Path of the socket; empty: $PURSUIT_SOCKET, else $XDG_RUNTIME_DIR/pursuit/socket, else /run/pursuit/socket."),
-	TEXT(record, "record", OPTION_DAEMON, "", "Record the frames received into this file, from the start."),
+	TEXT(record, "record", OPTION_DAEMON, "",
+		 "Record the frames received into this file, from the start. One that is there is kept as FILE.1, FILE.2 and "
+		 "so on."),
 	TEXT(stats, "stats", OPTION_DAEMON, "", "Write the statistics into this file at the end, as JSON."),
 	NUMBER(max_clients, "max-clients", OPTION_DAEMON, "16", 1, 256, "", "Clients that may be connected at once."),
 	NUMBER(max_frame_mb, "max-frame-mb", OPTION_DAEMON, "1024", 1, 1024, "MiB",

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "daemon/arguments.h"
+#include "daemon/aside.h"
 #include "daemon/clock.h"
 #include "daemon/control.h"
 #include "daemon/keyboard.h"
@@ -145,6 +146,23 @@ static void raise_priority(const struct log *log)
 		log_debug(log, "running at ordinary priority (%s)", strerror(errno));
 }
 
+/* What earlier runs wrote under the names that this one is given. */
+static int keep_files(const struct pursuitd *daemon, struct error *error)
+{
+	const struct settings *settings = &daemon->settings;
+	const bool is_video = *settings->tee && !strchr(settings->tee, '%');
+	char times[sizeof(settings->tee) + 8];
+	snprintf(times, sizeof(times), "%s.csv", settings->tee);
+	int result = aside_put("latency-log", settings->lab.latency_log, &daemon->log, error);
+	if (result == 0)
+		result = aside_put("record", settings->record, &daemon->log, error);
+	if (result == 0 && is_video)
+		result = aside_put("tee", settings->tee, &daemon->log, error);
+	if (result == 0 && is_video)
+		result = aside_put("tee", times, &daemon->log, error);
+	return result;
+}
+
 /* What tells how a latency log came to be. */
 static int start_lab(struct pursuitd *daemon, struct error *error)
 {
@@ -193,6 +211,8 @@ static int start(struct pursuitd *daemon, struct error *error)
 	clock_init_real(&daemon->clock);
 	daemon->loop = loop_create(error);
 	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)
+		return -1;
+	if (keep_files(daemon, error) < 0)
 		return -1;
 	/* Before any thread: it may fork. */
 	if (lab_is_wanted(&daemon->settings.lab) && start_lab(daemon, error) < 0)
