@@ -26,6 +26,7 @@ struct kms_gl {
 	PFNEGLDESTROYIMAGEKHRPROC destroy_image;
 	image_target_function image_target;
 	PFNGLGENTEXTURESPROC gen_textures;
+	PFNGLDELETETEXTURESPROC delete_textures;
 	PFNGLBINDTEXTUREPROC bind_texture;
 	PFNGLGENFRAMEBUFFERSPROC gen_framebuffers;
 	PFNGLBINDFRAMEBUFFERPROC bind_framebuffer;
@@ -65,6 +66,7 @@ static bool find_functions(struct kms_gl *gl)
 		{"eglDestroyImageKHR", offsetof(struct kms_gl, destroy_image)},
 		{"glEGLImageTargetTexture2DOES", offsetof(struct kms_gl, image_target)},
 		{"glGenTextures", offsetof(struct kms_gl, gen_textures)},
+		{"glDeleteTextures", offsetof(struct kms_gl, delete_textures)},
 		{"glBindTexture", offsetof(struct kms_gl, bind_texture)},
 		{"glGenFramebuffers", offsetof(struct kms_gl, gen_framebuffers)},
 		{"glBindFramebuffer", offsetof(struct kms_gl, bind_framebuffer)},
@@ -198,6 +200,8 @@ int kms_gl_create_buffer(struct kms_gl *gl, uint32_t width, uint32_t height, str
 
 void kms_gl_destroy_buffer(struct kms_gl *gl, struct kms_gl_buffer *buffer)
 {
+	if (buffer->texture && eglGetCurrentContext() == gl->context)
+		gl->delete_textures(1, &buffer->texture);
 	if (buffer->image)
 		gl->destroy_image(gl->display, buffer->image);
 	if (buffer->bo)

@@ -41,7 +41,7 @@ int kms_gl_create_buffer(struct kms_gl *gl, uint32_t width, uint32_t height, str
 						 struct error *error);
 /* Makes all of it black. */
 void kms_gl_blacken(struct kms_gl *gl, const struct kms_gl_buffer *buffer);
-/* On main, once no context is current; its texture goes with the context. */
+/* Also on main, once the context is current nowhere; then the texture goes with the context. */
 void kms_gl_destroy_buffer(struct kms_gl *gl, struct kms_gl_buffer *buffer);
 
 #endif
