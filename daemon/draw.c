@@ -33,7 +33,7 @@ static int acquire_somewhere(struct render *render, uint32_t width, uint32_t hei
 	if (!stays_in_gl(render))
 		return impl->acquire(render->presenter, width, height, image);
 	const int result = impl->acquire_texture(render->presenter, width, height, image);
-	if (result >= 0 || result == -EBUSY || result == -E2BIG)
+	if (result >= 0 || result == -EBUSY)
 		return result;
 	log_warning(render->log, "%s takes no pictures in GL: they go through CPU memory", impl->name);
 	render->through_memory = true;
@@ -47,7 +47,7 @@ static int acquire(struct render *render, struct presenter_image *image)
 	const int result = acquire_somewhere(render, width, height, image);
 	if (result == -EBUSY)
 		render_expect_flips(render);
-	if (result < 0 && result != -E2BIG)
+	if (result < 0)
 		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
 	return result;
 }
@@ -82,12 +82,15 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 	int result = acquire(render, image);
 	if (result < 0)
 		return result;
+	/* Only a real frame is worth a flip that may wait for the GPU; instead of an in-between a plain one is shown. */
+	image->fenced = image->fenced && show == ENGINE_SHOW_REAL;
 	struct engine_image target = {.data = image->data,
 								  .stride = image->stride,
 								  .holds = image->holds,
 								  .texture = image->texture,
 								  .texture_x = image->texture_x,
-								  .texture_y = image->texture_y};
+								  .texture_y = image->texture_y,
+								  .unfinished = image->fenced};
 	result = engine_render(render->engine, &request, &target, &error);
 	image->holds = result == 0 ? target.holds : 0;
 	if (result == 0) {
@@ -361,6 +364,17 @@ static void give_up(struct render *render)
 		showing_close_frames(&render->showing, render->group + 1);
 }
 
+/* The presenter has it while the GPU is at it still: what it costs, and when it was ready, is known only now. */
+static void finish_real(struct render *render, uint64_t now_ns)
+{
+	struct error error;
+	const int result = engine_finish(render->engine, &error);
+	add_cost(render, &render->real_cost, now_ns);
+	showing_set_ready(&render->showing, render->serial, clock_now(render->clock));
+	if (draw_is_lost(render, result))
+		draw_lose_engine(render, result, error.text);
+}
+
 void draw_real(struct render *render, uint64_t now_ns)
 {
 	struct presenter_image image;
@@ -387,13 +401,17 @@ void draw_real(struct render *render, uint64_t now_ns)
 		give_up(render);
 		return;
 	}
-	add_cost(render, &render->real_cost, now_ns);
-	if (queue_real(render, &image, &decision, &vblank) < 0) {
+	const int queued = queue_real(render, &image, &decision, &vblank);
+	if (!image.fenced)
+		add_cost(render, &render->real_cost, now_ns);
+	if (queued < 0) {
 		render->presenter->impl->release(render->presenter, &image);
 		give_up(render);
 		return;
 	}
 	settle_real(render, &decision, vblank);
+	if (image.fenced)
+		finish_real(render, now_ns);
 }
 
 /* ---- the others ---- */
@@ -436,8 +454,9 @@ void draw_in_between(struct render *render, const struct pacer_decision *decisio
 	struct presenter_image image;
 	if (draw(render, ENGINE_SHOW_IN_BETWEEN, decision->phase, &image) < 0)
 		return;
+	const int queued = queue(render, &image, vblank, STATS_IN_BETWEEN, decision->phase);
 	add_cost(render, &render->between_cost, start_ns);
-	if (queue(render, &image, vblank, STATS_IN_BETWEEN, decision->phase) < 0) {
+	if (queued < 0) {
 		render->presenter->impl->release(render->presenter, &image);
 		pacer_missed(&render->pacer, decision);
 		return;
@@ -452,9 +471,9 @@ void draw_plain(struct render *render, uint64_t vblank)
 	render->standby_done = true;
 	if (draw(render, ENGINE_SHOW_PLAIN, 0.0, &image) < 0)
 		return;
-	add_cost(render, &render->plain_cost, start_ns);
 	if (vblank != 0) {
 		render->front_plain = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
+		add_cost(render, &render->plain_cost, start_ns);
 		render->front_black &= !render->front_plain;
 		if (!render->front_plain)
 			render->presenter->impl->release(render->presenter, &image);
@@ -467,6 +486,7 @@ void draw_plain(struct render *render, uint64_t vblank)
 	showing_add_picture(&render->showing, &picture);
 	lab_mark_picture(render->lab, &image, picture.serial, render->real_vblank, POINTS_STANDBY);
 	render->presenter->impl->set_standby(render->presenter, &image, render->group, picture.serial);
+	add_cost(render, &render->plain_cost, start_ns);
 	if (render->tee)
 		tee_add(render->tee, &image, render->group, picture.serial);
 }

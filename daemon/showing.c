@@ -80,6 +80,13 @@ void showing_add_picture(struct showing *showing, const struct showing_picture *
 	showing->pictures[picture->serial % SHOWING_PICTURES] = *picture;
 }
 
+void showing_set_ready(struct showing *showing, uint64_t serial, uint64_t ready_ns)
+{
+	struct showing_picture *picture = &showing->pictures[serial % SHOWING_PICTURES];
+	if (picture->serial == serial)
+		picture->ready_ns = ready_ns;
+}
+
 void showing_plan(struct showing *showing, uint64_t vblank, enum showing_plan plan)
 {
 	showing->plans[vblank % SHOWING_VBLANKS].vblank = vblank;

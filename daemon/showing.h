@@ -72,6 +72,8 @@ void showing_add_frame(struct showing *showing, uint64_t group, struct stream *s
 struct showing_frame *showing_find_frame(struct showing *showing, uint64_t group);
 
 void showing_add_picture(struct showing *showing, const struct showing_picture *picture);
+/* One that was not ready when it was added; before its flip is told. */
+void showing_set_ready(struct showing *showing, uint64_t serial, uint64_t ready_ns);
 void showing_plan(struct showing *showing, uint64_t vblank, enum showing_plan plan);
 
 /* A vblank is over. */

@@ -197,6 +197,16 @@ int engine_render(struct engine *engine, const struct engine_request *request, s
 	return result;
 }
 
+int engine_finish(struct engine *engine, struct error *error)
+{
+	const uint64_t began = now_ns();
+	int result = engine->executor->ops->enter(engine->executor, error);
+	if (result == 0)
+		result = engine->executor->ops->finish(engine->executor, error);
+	engine->report.total_ms += (double)(now_ns() - began) * 1e-6;
+	return result;
+}
+
 const struct engine_report *engine_get_report(struct engine *engine)
 {
 	engine->executor->ops->collect_times(engine->executor);

@@ -128,6 +128,7 @@ struct engine_image {
 	 */
 	uint32_t texture;
 	uint32_t texture_x, texture_y; /* of a larger one: where the picture begins */
+	bool unfinished;               /* engine_render() need not wait for them: engine_finish() does */
 };
 
 struct engine_begin_params {
@@ -201,6 +202,9 @@ void engine_get_size(const struct engine *engine, uint32_t *width, uint32_t *hei
 /* Makes one displayed frame of the real frame begun last. With image->data it returns when the pixels are there. */
 int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
 				  struct error *error);
+
+/* Waits until all that was rendered is done. 0, or -EIO with a sentence: the context is lost. */
+int engine_finish(struct engine *engine, struct error *error);
 
 /* What ran since engine_begin(). Owned by the engine, valid until the next call. Waits for timer queries. */
 const struct engine_report *engine_get_report(struct engine *engine);

@@ -74,6 +74,8 @@ struct executor_ops {
 	void (*release_planes)(struct engine *engine);
 	/* Everything asked for is on its way, though nobody waits for it. */
 	void (*flush)(struct executor *executor);
+	/* It is done. 0, or -EIO with a sentence: all is lost. */
+	int (*finish)(struct executor *executor, struct error *error);
 	/* Around each pass; they do not nest. What cannot be known yet comes with collect_times(), or never, with drop. */
 	void (*time_begin)(struct executor *executor, struct engine_pass_report *pass, bool on_cpu);
 	void (*time_end)(struct executor *executor);

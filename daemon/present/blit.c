@@ -7,19 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-struct blit_rectangle blit_fit(uint32_t width, uint32_t height, uint32_t window_width, uint32_t window_height)
-{
-	struct blit_rectangle fit = {0, 0, window_width, window_height};
-	if ((uint64_t)window_width * height > (uint64_t)window_height * width)
-		fit.width = (uint32_t)(((uint64_t)window_height * width + height / 2) / height);
-	else
-		fit.height = (uint32_t)(((uint64_t)window_width * height + width / 2) / width);
-	fit.width += fit.width == 0;
-	fit.height += fit.height == 0;
-	fit.x = (window_width - fit.width) / 2;
-	fit.y = (window_height - fit.height) / 2;
-	return fit;
-}
+#include "daemon/present/rectangle.h"
 
 int blit_init(struct blit *blit, blit_function (*find)(const char *name), struct error *error)
 {
@@ -99,7 +87,7 @@ void blit_draw(struct blit *blit, const struct presenter_image *image, uint32_t 
 		blit->clear(GL_COLOR_BUFFER_BIT);
 		return;
 	}
-	const struct blit_rectangle to = blit_fit(image->width, image->height, window_width, window_height);
+	const struct rectangle to = rectangle_fit(image->width, image->height, window_width, window_height);
 	const bool same_size = to.width == image->width && to.height == image->height;
 	if (to.width != window_width || to.height != window_height)
 		blit->clear(GL_COLOR_BUFFER_BIT);

@@ -14,13 +14,6 @@
 #include "daemon/error.h"
 #include "daemon/present/presenter.h"
 
-struct blit_rectangle {
-	uint32_t x, y, width, height;
-};
-
-/* Where a picture of this size goes in a window of that size; sizes at least 1. Centred, whole pixels. */
-struct blit_rectangle blit_fit(uint32_t width, uint32_t height, uint32_t window_width, uint32_t window_height);
-
 struct blit {
 	GLuint texture, framebuffer;
 	GLuint shared_framebuffer; /* of textures that are not ours */

@@ -58,8 +58,7 @@ static void take_down(struct kms *kms)
 	if (kms->device) {
 		/* First what was there before, so that the display does not go dark in between. */
 		kms_device_restore(kms->device);
-		for (uint32_t i = 0; i < FLIPS_IMAGES; i++)
-			kms_destroy_picture(kms, &kms->pictures[i]);
+		kms_destroy_pictures(kms);
 		kms_device_destroy_buffer(kms->device, &kms->backdrop);
 	}
 	kms_gl_destroy(&kms->gl);
@@ -137,6 +136,8 @@ static struct presenter *kms_create(const struct presenter_params *params, struc
 	kms->presenter.impl = &presenter_kms;
 	kms->params = *params;
 	kms->wake = -1;
+	for (uint32_t i = 0; i < FLIPS_IMAGES; i++)
+		kms->pictures[i].fence = -1;
 	kms->console = (struct kms_console){-1, -1};
 	pthread_mutex_init(&kms->lock, NULL);
 	if (start(kms, error) < 0) {
@@ -163,13 +164,6 @@ static void kms_destroy(struct presenter *presenter)
 }
 
 /* ---- queueing ---- */
-
-static void kms_release(struct presenter *presenter, const struct presenter_image *image)
-{
-	struct kms *kms = kms_of(presenter);
-	kms_take_back(kms, image);
-	kms_give_back(kms, image->index);
-}
 
 /* The kernel has no picture for this vblank yet and can still take one. */
 static bool is_open(const struct kms *kms, uint64_t vblank, uint64_t now_ns)

@@ -22,13 +22,14 @@
 
 #include <pthread.h>
 
-#include "daemon/present/canvas.h"
+#include "daemon/present/contents.h"
 #include "daemon/present/kms_cable.h"
 #include "daemon/present/kms_console.h"
 #include "daemon/present/kms_device.h"
 #include "daemon/present/kms_gl.h"
 #include "daemon/present/presenter.h"
 #include "daemon/present/scanout.h"
+#include "daemon/present/shrink.h"
 #include "daemon/present/vblanks.h"
 
 #define KMS_REPORTS 16u
@@ -36,7 +37,10 @@
 /* Memory of one kind, the CPU's or GL's, that the controller scans out. */
 struct kms_surface {
 	struct kms_buffer buffer;
-	struct canvas canvas;
+	struct contents contents;
+	/* Of memory of the same kind for a picture that is larger than the display, and must be made smaller. */
+	struct contents large;
+	uint64_t shrunk; /* what of `large` the buffer shows, as its `holds`; 0: unknown */
 };
 
 /* It has both kinds, as soon as each is asked for. */
@@ -44,6 +48,12 @@ struct kms_picture {
 	struct kms_surface memory, in_gl;
 	struct kms_gl_buffer gl_buffer; /* of in_gl */
 	struct kms_surface *shown;      /* which of them it was drawn into */
+	struct rectangle part;          /* where in it the picture lies */
+	bool is_large;
+	uint8_t *large;
+	size_t large_stride, large_size; /* bytes */
+	struct kms_gl_large gl_large;
+	int fence; /* a descriptor: drawn when it signals; -1: it is drawn */
 };
 
 struct kms {
@@ -67,9 +77,10 @@ struct kms {
 	uint64_t chosen;           /* the newest vblank that a picture was looked for */
 	bool running, stop, away, lost;
 	struct kms_picture pictures[FLIPS_IMAGES]; /* of an acquired one: the render thread's */
-	uint32_t refused_width, refused_height;    /* the render thread's: said already */
 	uint32_t tried_width, tried_height;        /* the render thread's: does the controller enlarge these pictures? */
 	bool scales;
+	struct shrink *shrink; /* the render thread's, for pictures of this size; NULL: none yet */
+	uint32_t shrink_width, shrink_height;
 	struct error loss; /* does not change once `lost` is set */
 	uint64_t heard_ns; /* of the display */
 
@@ -90,12 +101,11 @@ int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, st
 int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 const struct presenter_context *kms_get_context(struct presenter *presenter);
 
-/* The image's memory is its user's no more; before anybody else can acquire it. */
+/* The image was drawn and is to be shown: makes it smaller if it must be, and fences it if it is drawn still. */
 void kms_take_back(struct kms *kms, const struct presenter_image *image);
-/* An acquired picture is free again. */
-void kms_give_back(struct kms *kms, uint32_t index);
+void kms_release(struct presenter *presenter, const struct presenter_image *image);
 /* On main, at the end. */
-void kms_destroy_picture(struct kms *kms, struct kms_picture *picture);
+void kms_destroy_pictures(struct kms *kms);
 
 /* All with the lock. */
 

@@ -57,6 +57,7 @@ void kms_atomic_find(struct kms_device *device)
 	atomic->crtc_active = find_property(fd, device->crtc, DRM_MODE_OBJECT_CRTC, "ACTIVE", NULL);
 	atomic->plane_framebuffer = find_property(fd, atomic->plane, DRM_MODE_OBJECT_PLANE, "FB_ID", NULL);
 	atomic->plane_crtc = find_property(fd, atomic->plane, DRM_MODE_OBJECT_PLANE, "CRTC_ID", NULL);
+	atomic->plane_fence = find_property(fd, atomic->plane, DRM_MODE_OBJECT_PLANE, "IN_FENCE_FD", NULL);
 	atomic->usable = atomic->plane && atomic->connector_crtc && atomic->crtc_mode && atomic->crtc_active &&
 					 atomic->plane_framebuffer && atomic->plane_crtc;
 	for (int i = 0; i < 4; i++) {
@@ -74,9 +75,10 @@ void kms_atomic_find(struct kms_device *device)
 static void add_places(const struct kms_device *device, const struct kms_buffer *buffer, drmModeAtomicReq *request)
 {
 	const struct kms_atomic *atomic = &device->atomic;
-	const struct kms_rectangle whole = {0, 0, device->mode.width, device->mode.height};
-	const struct kms_rectangle from = buffer->part.width ? buffer->part : whole;
-	const struct kms_rectangle to = buffer->part.width ? kms_mode_fit(&device->mode, &from) : whole;
+	const struct rectangle whole = {0, 0, device->mode.width, device->mode.height};
+	const struct rectangle from = buffer->part.width ? buffer->part : whole;
+	const struct rectangle to =
+		buffer->part.width ? rectangle_fit(from.width, from.height, whole.width, whole.height) : whole;
 	const uint64_t source[4] = {(uint64_t)from.x << 16, (uint64_t)from.y << 16, (uint64_t)from.width << 16,
 								(uint64_t)from.height << 16};
 	const uint64_t target[4] = {to.x, to.y, to.width, to.height};
@@ -86,7 +88,7 @@ static void add_places(const struct kms_device *device, const struct kms_buffer 
 	}
 }
 
-int kms_atomic_commit(const struct kms_device *device, const struct kms_buffer *buffer, uint32_t flags)
+int kms_atomic_commit(const struct kms_device *device, const struct kms_buffer *buffer, int fence, uint32_t flags)
 {
 	const struct kms_atomic *atomic = &device->atomic;
 	drmModeAtomicReq *request = drmModeAtomicAlloc();
@@ -100,6 +102,8 @@ int kms_atomic_commit(const struct kms_device *device, const struct kms_buffer *
 	}
 	add_places(device, buffer, request);
 	drmModeAtomicAddProperty(request, atomic->plane, atomic->plane_framebuffer, buffer->framebuffer);
+	if (fence >= 0)
+		drmModeAtomicAddProperty(request, atomic->plane, atomic->plane_fence, (uint64_t)fence);
 	const int result = drmModeAtomicCommit(device->fd, request, flags, (void *)(uintptr_t)device);
 	drmModeAtomicFree(request);
 	return result;

@@ -121,7 +121,7 @@ int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t
 	int result = drmModeAddFB2(device->fd, device->mode.width, device->mode.height, DRM_FORMAT_XRGB8888, handles,
 							   pitches, offsets, &buffer->framebuffer, 0);
 	if (result == 0 && device->atomic.usable && !device->away)
-		result = kms_atomic_commit(device, buffer, DRM_MODE_ATOMIC_TEST_ONLY);
+		result = kms_atomic_commit(device, buffer, -1, DRM_MODE_ATOMIC_TEST_ONLY);
 	if (result == 0)
 		return 0;
 	result = -errno;
@@ -133,11 +133,12 @@ int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t
 /* ---- showing ---- */
 
 bool kms_device_can_scale(const struct kms_device *device, const struct kms_buffer *buffer,
-						  const struct kms_rectangle *part)
+						  const struct rectangle *part)
 {
 	struct kms_buffer scaled = *buffer;
 	scaled.part = *part;
-	return device->atomic.usable && !device->away && kms_atomic_commit(device, &scaled, DRM_MODE_ATOMIC_TEST_ONLY) == 0;
+	return device->atomic.usable && !device->away &&
+		   kms_atomic_commit(device, &scaled, -1, DRM_MODE_ATOMIC_TEST_ONLY) == 0;
 }
 
 static int set_mode(struct kms_device *device, const struct kms_buffer *buffer)
@@ -147,8 +148,8 @@ static int set_mode(struct kms_device *device, const struct kms_buffer *buffer)
 										  &device->timings);
 		return result == 0 ? 0 : -errno;
 	}
-	const int result = kms_atomic_commit(device, buffer, DRM_MODE_ATOMIC_ALLOW_MODESET | DRM_MODE_ATOMIC_TEST_ONLY);
-	return result == 0 ? kms_atomic_commit(device, buffer, DRM_MODE_ATOMIC_ALLOW_MODESET) : result;
+	const int result = kms_atomic_commit(device, buffer, -1, DRM_MODE_ATOMIC_ALLOW_MODESET | DRM_MODE_ATOMIC_TEST_ONLY);
+	return result == 0 ? kms_atomic_commit(device, buffer, -1, DRM_MODE_ATOMIC_ALLOW_MODESET) : result;
 }
 
 int kms_device_show(struct kms_device *device, const struct kms_buffer *buffer, struct error *error)
@@ -163,10 +164,15 @@ int kms_device_show(struct kms_device *device, const struct kms_buffer *buffer, 
 					 device->mode.made ? "; give another as --mode WxH@R" : "");
 }
 
-int kms_device_flip(struct kms_device *device, const struct kms_buffer *buffer)
+bool kms_device_takes_fences(const struct kms_device *device)
+{
+	return device->atomic.usable && device->atomic.plane_fence;
+}
+
+int kms_device_flip(struct kms_device *device, const struct kms_buffer *buffer, int fence)
 {
 	if (device->atomic.usable)
-		return kms_atomic_commit(device, buffer, DRM_MODE_ATOMIC_NONBLOCK | DRM_MODE_PAGE_FLIP_EVENT);
+		return kms_atomic_commit(device, buffer, fence, DRM_MODE_ATOMIC_NONBLOCK | DRM_MODE_PAGE_FLIP_EVENT);
 	return drmModePageFlip(device->fd, device->crtc, buffer->framebuffer, DRM_MODE_PAGE_FLIP_EVENT, device) == 0
 			   ? 0
 			   : -errno;

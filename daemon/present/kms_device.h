@@ -27,6 +27,7 @@
 
 #include "daemon/error.h"
 #include "daemon/present/kms_mode.h"
+#include "daemon/present/rectangle.h"
 
 struct kms_device;
 
@@ -43,7 +44,7 @@ struct kms_buffer {
 	size_t stride, size;
 	uint32_t handle, framebuffer;
 	/* What of it is shown, as large as fits and its shape kept; width 0: all. Only what kms_device_can_scale(). */
-	struct kms_rectangle part;
+	struct rectangle part;
 };
 
 struct kms_events {
@@ -78,12 +79,18 @@ int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t
 
 /* Would the display show this part of the buffer, enlarged by its controller? Asked without changing anything. */
 bool kms_device_can_scale(const struct kms_device *device, const struct kms_buffer *buffer,
-						  const struct kms_rectangle *part);
+						  const struct rectangle *part);
 
 /* Lights the display up with this buffer; waits until it is. */
 int kms_device_show(struct kms_device *device, const struct kms_buffer *buffer, struct error *error);
-/* Shows this buffer from the next vblank on; never waits. -EBUSY: a flip is under way; -EACCES: no longer master. */
-int kms_device_flip(struct kms_device *device, const struct kms_buffer *buffer);
+/* Does it wait for a fence by itself? */
+bool kms_device_takes_fences(const struct kms_device *device);
+/*
+ * Shows this buffer from the next vblank on; never waits. -EBUSY: a flip is under way; -EACCES: no longer master.
+ * fence: a sync file, the caller's: from the next vblank on after it has signalled; -1: none, as always where fences
+ * are not taken.
+ */
+int kms_device_flip(struct kms_device *device, const struct kms_buffer *buffer, int fence);
 
 /* The last vblank. -EOPNOTSUPP: the driver does not count them. */
 int kms_device_get_sequence(struct kms_device *device, uint64_t *sequence, uint64_t *time_ns);

@@ -22,6 +22,7 @@ struct kms_atomic {
 	uint32_t plane;
 	uint32_t connector_crtc, crtc_mode, crtc_active;
 	uint32_t plane_framebuffer, plane_crtc;
+	uint32_t plane_fence;          /* 0: it takes none */
 	uint32_t source[4], target[4]; /* x, y, width, height */
 	uint32_t mode_blob;
 };
@@ -46,7 +47,10 @@ int kms_find(struct kms_device *device, const struct kms_device_params *params, 
 
 /* Looks for all that atomic mode setting needs; `usable` says whether it is there. */
 void kms_atomic_find(struct kms_device *device);
-/* flags: the kernel's DRM_MODE_ATOMIC_*, and DRM_MODE_PAGE_FLIP_EVENT. 0 or a negative errno. */
-int kms_atomic_commit(const struct kms_device *device, const struct kms_buffer *buffer, uint32_t flags);
+/*
+ * fence: as of kms_device_flip(). flags: the kernel's DRM_MODE_ATOMIC_*, and DRM_MODE_PAGE_FLIP_EVENT. 0 or a negative
+ * errno.
+ */
+int kms_atomic_commit(const struct kms_device *device, const struct kms_buffer *buffer, int fence, uint32_t flags);
 
 #endif

@@ -75,7 +75,8 @@ void kms_choose(struct kms *kms, uint64_t vblank)
 	kms->chosen = vblank;
 	if (image < 0)
 		return;
-	const int result = kms_device_flip(kms->device, &kms->pictures[image].shown->buffer);
+	const struct kms_picture *picture = &kms->pictures[image];
+	const int result = kms_device_flip(kms->device, &picture->shown->buffer, picture->fence);
 	if (result == 0)
 		return;
 	scanout_failed(&kms->scanout);

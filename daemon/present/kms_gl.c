@@ -20,7 +20,7 @@ struct kms_gl {
 	EGLDisplay display;
 	EGLContext context;
 	struct presenter_context offered;
-	GLuint framebuffer;
+	GLuint framebuffer, source;
 
 	PFNEGLCREATEIMAGEKHRPROC create_image;
 	PFNEGLDESTROYIMAGEKHRPROC destroy_image;
@@ -33,6 +33,18 @@ struct kms_gl {
 	PFNGLFRAMEBUFFERTEXTURE2DPROC framebuffer_texture;
 	PFNGLCHECKFRAMEBUFFERSTATUSPROC check_framebuffer_status;
 	PFNGLCLEARBUFFERFVPROC clear_buffer;
+	PFNGLTEXIMAGE2DPROC tex_image;
+	PFNGLTEXPARAMETERIPROC tex_parameter;
+	PFNGLGENERATEMIPMAPPROC generate_mipmap;
+	PFNGLBLITFRAMEBUFFERPROC blit_framebuffer;
+	PFNGLGETERRORPROC get_error;
+	PFNGLFLUSHPROC flush;
+	PFNGLFINISHPROC finish;
+
+	/* NULL where there are no fences */
+	PFNEGLCREATESYNCKHRPROC create_sync;
+	PFNEGLDESTROYSYNCKHRPROC destroy_sync;
+	PFNEGLDUPNATIVEFENCEFDANDROIDPROC dup_fence;
 };
 
 /* ---- the context ---- */
@@ -73,6 +85,13 @@ static bool find_functions(struct kms_gl *gl)
 		{"glFramebufferTexture2D", offsetof(struct kms_gl, framebuffer_texture)},
 		{"glCheckFramebufferStatus", offsetof(struct kms_gl, check_framebuffer_status)},
 		{"glClearBufferfv", offsetof(struct kms_gl, clear_buffer)},
+		{"glTexImage2D", offsetof(struct kms_gl, tex_image)},
+		{"glTexParameteri", offsetof(struct kms_gl, tex_parameter)},
+		{"glGenerateMipmap", offsetof(struct kms_gl, generate_mipmap)},
+		{"glBlitFramebuffer", offsetof(struct kms_gl, blit_framebuffer)},
+		{"glGetError", offsetof(struct kms_gl, get_error)},
+		{"glFlush", offsetof(struct kms_gl, flush)},
+		{"glFinish", offsetof(struct kms_gl, finish)},
 	};
 	for (size_t i = 0; i < sizeof(functions) / sizeof(functions[0]); i++) {
 		void (*function)(void) = eglGetProcAddress(functions[i].name);
@@ -106,6 +125,16 @@ static int open_display(struct kms_gl *gl, struct error *error)
 	return 0;
 }
 
+static void find_fences(struct kms_gl *gl)
+{
+	if (!lists(eglQueryString(gl->display, EGL_EXTENSIONS), "EGL_ANDROID_native_fence_sync"))
+		return;
+	gl->create_sync = (PFNEGLCREATESYNCKHRPROC)eglGetProcAddress("eglCreateSyncKHR");
+	gl->destroy_sync = (PFNEGLDESTROYSYNCKHRPROC)eglGetProcAddress("eglDestroySyncKHR");
+	if (gl->create_sync && gl->destroy_sync)
+		gl->dup_fence = (PFNEGLDUPNATIVEFENCEFDANDROIDPROC)eglGetProcAddress("eglDupNativeFenceFDANDROID");
+}
+
 static int open_context(struct kms_gl *gl, struct error *error)
 {
 	static const EGLint attributes[] = {
@@ -115,6 +144,7 @@ static int open_context(struct kms_gl *gl, struct error *error)
 		gl->context = eglCreateContext(gl->display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
 	if (gl->context == EGL_NO_CONTEXT)
 		return error_set(error, -ENOTSUP, "EGL gives no OpenGL 4.3 (0x%x)", (unsigned)eglGetError());
+	find_fences(gl);
 	return find_functions(gl) ? 0 : error_set(error, -ENOTSUP, "its GL takes no buffers of others");
 }
 
@@ -207,4 +237,86 @@ void kms_gl_destroy_buffer(struct kms_gl *gl, struct kms_gl_buffer *buffer)
 	if (buffer->bo)
 		gbm_bo_destroy(buffer->bo);
 	memset(buffer, 0, sizeof(*buffer));
+}
+
+/* ---- pictures larger than a buffer ---- */
+
+int kms_gl_resize(struct kms_gl *gl, struct kms_gl_large *large, uint32_t width, uint32_t height, struct error *error)
+{
+	if (large->width == width && large->height == height)
+		return 0;
+	if (large->texture)
+		gl->delete_textures(1, &large->texture);
+	*large = (struct kms_gl_large){0, 0, 0};
+	if (width == 0)
+		return 0;
+	/* A lost context has an error for ever. */
+	for (int i = 0; i < 8 && gl->get_error() != 0; i++)
+		continue;
+	gl->gen_textures(1, &large->texture);
+	gl->bind_texture(GL_TEXTURE_2D, large->texture);
+	gl->tex_parameter(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
+	gl->tex_image(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, (GLsizei)width, (GLsizei)height, 0, GL_BGRA,
+				  GL_UNSIGNED_INT_8_8_8_8_REV, NULL);
+	if (gl->get_error() != 0) {
+		gl->delete_textures(1, &large->texture);
+		large->texture = 0;
+		return error_set(error, -ENOMEM, "kms: GL has no memory for a picture of %ux%u", width, height);
+	}
+	large->width = width;
+	large->height = height;
+	return 0;
+}
+
+/* How often it can be halved without getting smaller than this. */
+static GLint halvings(const struct kms_gl_large *large, const struct rectangle *part)
+{
+	GLint level = 0;
+	while (large->width >> (level + 1) >= part->width && large->height >> (level + 1) >= part->height)
+		level++;
+	return level;
+}
+
+void kms_gl_shrink(struct kms_gl *gl, const struct kms_gl_large *large, const struct kms_gl_buffer *buffer,
+				   const struct rectangle *part)
+{
+	const GLint level = halvings(large, part);
+	const GLint x = (GLint)part->x, y = (GLint)part->y;
+	if (!is_drawable(gl, buffer))
+		return;
+	if (level > 0) {
+		gl->bind_texture(GL_TEXTURE_2D, large->texture);
+		gl->tex_parameter(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, level);
+		gl->generate_mipmap(GL_TEXTURE_2D);
+	}
+	if (!gl->source)
+		gl->gen_framebuffers(1, &gl->source);
+	gl->bind_framebuffer(GL_READ_FRAMEBUFFER, gl->source);
+	gl->framebuffer_texture(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, large->texture, level);
+	gl->blit_framebuffer(0, 0, (GLint)(large->width >> level), (GLint)(large->height >> level), x, y,
+						 x + (GLint)part->width, y + (GLint)part->height, GL_COLOR_BUFFER_BIT, GL_LINEAR);
+}
+
+/* ---- when it is drawn ---- */
+
+bool kms_gl_can_fence(const struct kms_gl *gl)
+{
+	return gl->dup_fence != NULL;
+}
+
+int kms_gl_fence(struct kms_gl *gl)
+{
+	const EGLSyncKHR sync = gl->create_sync(gl->display, EGL_SYNC_NATIVE_FENCE_ANDROID, NULL);
+	if (sync == EGL_NO_SYNC_KHR)
+		return -1;
+	/* It is the kernel's only once what stands before it has been sent there. */
+	gl->flush();
+	const int fence = gl->dup_fence(gl->display, sync);
+	gl->destroy_sync(gl->display, sync);
+	return fence;
+}
+
+void kms_gl_wait(struct kms_gl *gl)
+{
+	gl->finish();
 }

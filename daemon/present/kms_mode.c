@@ -206,15 +206,3 @@ void kms_mode_list(const struct kms_mode *modes, size_t count, char *text, size_
 		snprintf(last, sizeof(last), "%s", one);
 	}
 }
-
-struct kms_rectangle kms_mode_fit(const struct kms_mode *mode, const struct kms_rectangle *part)
-{
-	struct kms_rectangle to = {0, 0, mode->width, mode->height};
-	if ((uint64_t)to.width * part->height > (uint64_t)to.height * part->width)
-		to.width = (uint32_t)((uint64_t)to.height * part->width / part->height);
-	else
-		to.height = (uint32_t)((uint64_t)to.width * part->height / part->width);
-	to.x = (mode->width - to.width) / 2;
-	to.y = (mode->height - to.height) / 2;
-	return to;
-}

@@ -62,10 +62,4 @@ void kms_mode_print(const struct kms_mode *mode, char *text, size_t size);
 /* Those, divided by commas, as far as there is room. */
 void kms_mode_list(const struct kms_mode *modes, size_t count, char *text, size_t size);
 
-struct kms_rectangle {
-	uint32_t x, y, width, height;
-};
-/* Where on the display something goes as large as it fits, its shape kept, centred; its sides at least 1. */
-struct kms_rectangle kms_mode_fit(const struct kms_mode *mode, const struct kms_rectangle *part);
-
 #endif

@@ -113,16 +113,16 @@ static void give_back(struct pictures *pictures, const struct presenter_image *i
 	pthread_mutex_unlock(&pictures->lock);
 }
 
-/* there: the canvas has memory of that size. */
-static int lend(struct pictures *pictures, struct canvas *canvas, bool there, uint32_t width, uint32_t height,
+/* there: the contents has memory of that size. */
+static int lend(struct pictures *pictures, struct contents *contents, bool there, uint32_t width, uint32_t height,
 				struct presenter_image *image)
 {
 	if (!there) {
-		*canvas = (struct canvas){0, 0, 0};
+		*contents = (struct contents){0, 0, 0};
 		give_back(pictures, image);
 		return -ENOMEM;
 	}
-	canvas_lend(canvas, width, height, image);
+	contents_lend(contents, width, height, image);
 	pictures->shapes[image->index] = *image;
 	return 0;
 }
@@ -163,7 +163,7 @@ int pictures_acquire_texture(struct pictures *pictures, const struct texture_fun
 static void take_back(struct pictures *pictures, const struct presenter_image *image)
 {
 	struct pictures_memory *memory = &pictures->memory[image->index];
-	canvas_take_back(image->data ? &memory->in_memory : &memory->in_gl, image);
+	contents_take_back(image->data ? &memory->in_memory : &memory->in_gl, image);
 }
 
 void pictures_release(struct presenter *presenter, const struct presenter_image *image)

@@ -12,7 +12,7 @@
 
 #include <pthread.h>
 
-#include "daemon/present/canvas.h"
+#include "daemon/present/contents.h"
 #include "daemon/present/flips.h"
 #include "daemon/present/presenter.h"
 #include "daemon/present/texture.h"
@@ -34,7 +34,7 @@ struct pictures {
 		uint8_t *data;
 		size_t size;
 		struct texture texture; /* the same in GL, once it was asked for */
-		struct canvas in_memory, in_gl;
+		struct contents in_memory, in_gl;
 	} memory[FLIPS_IMAGES];                      /* of an acquired picture: the render thread's; else as `shape` says */
 	struct presenter_image shapes[FLIPS_IMAGES]; /* as acquired last */
 };

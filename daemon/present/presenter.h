@@ -45,6 +45,11 @@ struct presenter_image {
 	uint64_t holds;
 	uint32_t texture;              /* of the share group of get_context(), row 0 on top; 0: in CPU memory */
 	uint32_t texture_x, texture_y; /* where the picture begins in it */
+	/*
+	 * In GL, as it is acquired: the presenter can wait for the GPU by itself, so the picture may be presented while it
+	 * is drawn still. As it is presented: it may be so.
+	 */
+	bool fenced;
 };
 
 /*
@@ -159,14 +164,15 @@ struct presenter_impl {
 	/* Optional: which display in which mode, for a person. Lives as long as the presenter. */
 	const char *(*get_display)(struct presenter *presenter);
 	/*
-	 * A free picture to draw into; never waits. -EBUSY: all are queued or shown; -ENOMEM; -E2BIG: larger than the
-	 * display, which the presenter has said.
+	 * A free picture to draw into; never waits. One that is larger than the display is made smaller. -EBUSY: all are
+	 * queued or shown; -ENOMEM.
 	 */
 	int (*acquire)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 	/*
 	 * Optional, both or none. The context, NULL: it has none to offer; it may be current nowhere when the presenter is
 	 * destroyed. And acquire() of a picture in GL: with that context current; what is bound to its texture unit 0 and
-	 * as framebuffer changes. Other errors than -EBUSY and -E2BIG: pictures had better come by acquire().
+	 * as framebuffer changes, then and when the picture is presented. Other errors than -EBUSY: pictures had better
+	 * come by acquire().
 	 */
 	const struct presenter_context *(*get_context)(struct presenter *presenter);
 	int (*acquire_texture)(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);

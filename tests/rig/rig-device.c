@@ -112,8 +112,8 @@ static void flip(struct kms_device *device, struct kms_buffer buffers[2])
 	CHECK_INT(kms_device_get_sequence(device, &sequence, &last_ns), 0);
 	for (uint32_t i = 0; i < FLIPS; i++) {
 		CHECK_INT(kms_device_queue_sequence(device, sequence + 1), 0);
-		CHECK_INT(kms_device_flip(device, &buffers[i % 2]), 0);
-		CHECK_INT(kms_device_flip(device, &buffers[(i + 1) % 2]), -EBUSY);
+		CHECK_INT(kms_device_flip(device, &buffers[i % 2], -1), 0);
+		CHECK_INT(kms_device_flip(device, &buffers[(i + 1) % 2], -1), -EBUSY);
 		wait_for_both(device, &heard, i + 1);
 		CHECK_INT(heard.vblank, sequence + 1);
 		CHECK_INT((uint32_t)heard.flipped, (uint32_t)heard.vblank);
@@ -162,7 +162,7 @@ static void test_legacy(void)
 static void test_scaling(void)
 {
 	struct kms_device *device = open_device(false, "160x120@120");
-	const struct kms_rectangle part = {48, 40, 64, 40};
+	const struct rectangle part = {48, 40, 64, 40};
 	struct kms_buffer buffers[2];
 	struct error error;
 	if (!device)
@@ -175,7 +175,7 @@ static void test_scaling(void)
 	CHECK(kms_device_can_scale(device, &buffers[0], &part));
 	CHECK_INT(buffers[0].part.width, 0);
 	buffers[0].part = part;
-	CHECK_INT(kms_device_flip(device, &buffers[0]), 0);
+	CHECK_INT(kms_device_flip(device, &buffers[0], -1), 0);
 	CHECK(scaler.source[0] == 48 << 16 && scaler.source[1] == 40 << 16);
 	CHECK(scaler.source[2] == 64 << 16 && scaler.source[3] == 40 << 16);
 	CHECK(scaler.target[0] == 0 && scaler.target[1] == 10 && scaler.target[2] == 160 && scaler.target[3] == 100);

@@ -56,6 +56,11 @@ static void flush(struct executor *executor)
 {
 }
 
+static int finish(struct executor *executor, struct error *error)
+{
+	return 0;
+}
+
 static void release_planes(struct engine *engine)
 {
 	cpu_finish_intake(engine);
@@ -120,6 +125,7 @@ static const struct executor_ops ops = {
 	.keep_original = keep_original,
 	.release_planes = release_planes,
 	.flush = flush,
+	.finish = finish,
 	.time_begin = time_begin,
 	.time_end = time_end,
 	.collect_times = collect_times,

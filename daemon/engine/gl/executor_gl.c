@@ -9,6 +9,9 @@
 #include "daemon/engine/pass.h"
 #include "daemon/engine/pool.h"
 
+/* A GPU that needs longer for a picture is not coming back. */
+#define PATIENCE_NS UINT64_C(5000000000)
+
 static struct executor_gl *self(struct executor *executor)
 {
 	return (struct executor_gl *)executor;
@@ -89,6 +92,19 @@ static void flush(struct executor *executor)
 	table(executor)->Flush();
 }
 
+static int finish(struct executor *executor, struct error *error)
+{
+	const struct gl *gl = table(executor);
+	const GLsync fence = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+	if (!fence)
+		return error_set(error, -EIO, "the context is lost: it gives no fence");
+	const GLenum result = gl->ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, PATIENCE_NS);
+	gl->DeleteSync(fence);
+	if (result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED)
+		return 0;
+	return error_set(error, -EIO, "the context is lost: a fence does not come (0x%x)", result);
+}
+
 static void time_begin(struct executor *executor, struct engine_pass_report *pass, bool on_cpu)
 {
 	timer_begin(&self(executor)->timer, table(executor), pass, on_cpu);
@@ -149,6 +165,7 @@ static const struct executor_ops ops = {
 	.keep_original = keep_original,
 	.release_planes = release_planes,
 	.flush = flush,
+	.finish = finish,
 	.time_begin = time_begin,
 	.time_end = time_end,
 	.collect_times = collect_times,
