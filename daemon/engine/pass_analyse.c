@@ -3,6 +3,14 @@
 
 #include "daemon/engine/pass.h"
 
+/* What led to a picture from one just like it did not move; where it is going to it tells by forward motion alone. */
+static bool is_unchanged(const struct engine *engine)
+{
+	const struct damage *damage = &engine->damage;
+	return damage->known && !damage->count &&
+		   !(damage->found && engine->job.frame->header.motion_kind == PURSUIT_MOTION_FORWARD);
+}
+
 struct plan_params analyse_params(const struct engine *engine)
 {
 	return (struct plan_params){
@@ -12,7 +20,7 @@ struct plan_params analyse_params(const struct engine *engine)
 		.viewing_distance_mm = engine->params.viewing_distance_mm,
 		.last_phase = (float)engine->last_phase,
 		.real_interval_ns = engine->real_interval_ns,
-		.unchanged = engine->damage.known && !engine->damage.count,
+		.unchanged = is_unchanged(engine),
 		.pool = engine->executor->pool,
 	};
 }

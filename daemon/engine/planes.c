@@ -45,6 +45,7 @@ static void learn_damage(struct engine *engine, const struct pursuit_plane *colo
 	ui = ui ? ui : &none;
 	engine->damage.comparable = frame->stream && frame->stream == engine->stream &&
 								same_kind(color, &engine->color_plane) && same_kind(ui, &engine->ui_plane);
+	engine->damage.found = false;
 	engine->damage.known =
 		(header->flags & PURSUIT_FRAME_DAMAGE) && engine->damage.comparable && header->damage_since == engine->frame_id;
 	engine->damage.count = header->damage_count < PURSUIT_MAX_DAMAGE ? header->damage_count : PURSUIT_MAX_DAMAGE;

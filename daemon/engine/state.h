@@ -31,6 +31,7 @@ struct job {
 /* What is known to have changed since the frame begun before. */
 struct damage {
 	bool known;      /* else everything may have */
+	bool found;      /* by looking at colour and UI; nobody looked at depth and motion */
 	bool comparable; /* ORIGINAL and UI are what the frame before, of the same stream and kind, left there */
 	uint32_t count;
 	struct pursuit_rectangle rectangles[PURSUIT_MAX_DAMAGE];

@@ -338,6 +338,41 @@ static void test_damage(void)
 	picture_finish(&picture);
 }
 
+static void fill_motion(const struct picture *picture, float x)
+{
+	for (uint32_t j = 0; j < picture->height; j++)
+		for (uint32_t i = 0; i < picture->width; i++)
+			picture_set_motion(picture, i, j, j > 30 && j < 60 ? x : 0.0f, 0.0f);
+}
+
+/* What rests may be about to move: forward motion counts, though the picture is as it was; backward motion does not. */
+static void test_forward_motion_of_a_repeated_picture(void)
+{
+	const bool finds_repeats = strcmp(engine_get_info(engine)->context, "cpu") == 0;
+	struct picture picture;
+	picture_init(&picture, 160, 90, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH);
+	picture_draw_layers(&picture, 0.0);
+	set((struct engine_params){0});
+	for (uint32_t kind = PURSUIT_MOTION_BACKWARD; kind <= PURSUIT_MOTION_FORWARD; kind++) {
+		picture.frame.header.motion_kind = kind;
+		fill_motion(&picture, 0.0f);
+		for (int i = 0; i < 40; i++)
+			next(&picture, 0, 0);
+		CHECK(left_out("extrapolation", kind == PURSUIT_MOTION_BACKWARD ? "unchanged" : "still") || !finds_repeats);
+		CHECK(left_out("upload", "unchanged") || !finds_repeats);
+		fill_motion(&picture, 7.0f);
+		next(&picture, 0, 0);
+		CHECK(!left_out("extrapolation", "unchanged") || kind == PURSUIT_MOTION_BACKWARD);
+		CHECK(!left_out("extrapolation", "still"));
+		uint8_t *between = show(&picture, ENGINE_SHOW_IN_BETWEEN, 0.5), *plain = show(&picture, ENGINE_SHOW_PLAIN, 0.5);
+		const bool same = memcmp(between, plain, 4 * (size_t)picture.width * picture.height) == 0;
+		CHECK_INT(same, finds_repeats && kind == PURSUIT_MOTION_BACKWARD);
+		free(between);
+		free(plain);
+	}
+	picture_finish(&picture);
+}
+
 /* What is between two frames of a stream has nothing of another stream's; also if settings change in between. */
 static void test_streams_do_not_mix(void)
 {
@@ -420,6 +455,7 @@ int main(int argc, char **argv)
 	RUN(test_covered);
 	RUN(test_light);
 	RUN(test_damage);
+	RUN(test_forward_motion_of_a_repeated_picture);
 	RUN(test_streams_do_not_mix);
 	RUN(test_held);
 	RUN(test_plan_is_printed);

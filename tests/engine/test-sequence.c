@@ -194,6 +194,10 @@ static bool change_picture(struct sequence *sequence, uint32_t what, uint32_t y)
 	case 10:
 		feed_back(sequence);
 		return false;
+	case 11: /* the same picture is about to move */
+		picture->frame.header.motion_kind = PURSUIT_MOTION_FORWARD;
+		move(sequence, 0.5f * (float)(1 + pick(sequence, 40)));
+		return false;
 	default:
 		return true;
 	}
@@ -206,6 +210,7 @@ static void change(struct sequence *sequence)
 	const uint32_t what = pick(sequence, sequence->frame_id / 50 % 2 ? 80 : 15);
 	const uint32_t y = pick(sequence, sequence->height);
 	header->flags = 0;
+	header->motion_kind = pick(sequence, 2) ? PURSUIT_MOTION_BACKWARD : PURSUIT_MOTION_FORWARD;
 	stand_still(&sequence->picture);
 	if (!change_picture(sequence, what, y) || pick(sequence, 3))
 		return;

@@ -6,7 +6,7 @@
  * Each defines LEVEL_KERNELS (the table's name), LEVEL_NAME and, above this
  * include, decode_half_some(), which decodes a multiple of its own width and
  * says how many, the vector type wide (of floats, aligned to 4 bytes) and
- * wide_larger(): the larger of numbers that are not NaN.
+ * wide_larger(): the larger of numbers that are not NaN; and what row_hash.h asks for.
  *
  * Loops are written for the vectoriser: no branches, no reductions of floats
  * (of the bits of numbers that are not negative instead, which sort alike).
@@ -15,6 +15,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "daemon/engine/analysis/row_hash.h"
 #include "daemon/engine/analysis/values.h"
 
 static bool any_bits(const uint32_t *words, size_t count, uint32_t mask)
@@ -351,4 +352,5 @@ const struct plan_kernels LEVEL_KERNELS = {
 	.depth_row = depth_row,
 	.quads = quads,
 	.largest_square = largest_square,
+	.hash_row = hash_row,
 };

@@ -95,6 +95,8 @@ struct plan_kernels {
 									 size_t count, float phase, uint32_t *diagonals);
 	/* The largest ux² + uy². */
 	float (*largest_square)(const float *ux, const float *uy, size_t count);
+	/* A number of the bytes, another one at each level (row_hash.h). */
+	uint64_t (*hash_row)(const uint8_t *row, size_t bytes);
 };
 
 /* Kernels of a level; NULL if this build or this machine lacks it. */

@@ -88,4 +88,13 @@ static inline float plan_depth_value(uint32_t raw, const struct plan_depth *dept
 	}
 }
 
+/* One to one in each of the two while the other stays; factors of 32 bits are all that vectors multiply fast. */
+#define PLAN_HASH_FACTOR 0x9e3779b1u
+
+static inline uint64_t plan_hash_step(uint64_t hash, uint64_t word)
+{
+	hash = (hash ^ word) * PLAN_HASH_FACTOR;
+	return hash ^ hash >> 32;
+}
+
 #endif

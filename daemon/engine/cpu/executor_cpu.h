@@ -26,9 +26,11 @@ struct intake {
 	uint32_t color_items;   /* blocks of rows of colour, before those of the UI */
 	struct bounds *bounds;  /* of each block of rows of the UI */
 	size_t bounds_capacity; /* blocks */
+	uint32_t first_item;    /* those before it were taken by the caller alone */
 	bool under_way;
 	uint64_t bytes; /* of the pictures */
 	/* Rows that are as they were, of a picture that did not move: pass_upload.c. */
+	uint64_t (*hash_row)(const uint8_t *row, size_t bytes);
 	uint64_t *hashes; /* of rows of colour, then of the UI */
 	size_t hashes_capacity;
 	bool looks;          /* hashes are made of this frame */

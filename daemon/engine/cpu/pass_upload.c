@@ -7,14 +7,16 @@
  *
  * After a frame that did not move, rows are looked at first, and those that are as they were are left there; if all
  * are, the picture is what it was, and presenters that have it are given none. A frame that does differ costs a look at
- * a few rows, and none for the next few frames.
+ * a few rows, and none for the next few frames. One thread looks: memory is what it waits for, and waking another costs
+ * more than it spares.
  */
 #include "daemon/engine/cpu/executor_cpu.h"
 
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "daemon/engine/cpu/row_hash.h"
+#include "daemon/engine/analysis/levels.h"
 #include "daemon/engine/pass.h"
 
 #define ROWS_OF_ITEM 16u
@@ -31,7 +33,7 @@ static bool as_it_was(struct intake *intake, uint32_t row, const uint8_t *from, 
 {
 	if (!intake->looks || atomic_load_explicit(&intake->differs, memory_order_relaxed))
 		return false;
-	const uint64_t hash = row_hash(from, pixel_bytes(plane) * plane->width), before = intake->hashes[row];
+	const uint64_t hash = intake->hash_row(from, pixel_bytes(plane) * plane->width), before = intake->hashes[row];
 	intake->hashes[row] = hash;
 	if (intake->compares && hash != before)
 		atomic_store_explicit(&intake->differs, true, memory_order_relaxed);
@@ -121,6 +123,7 @@ static void take_rows(struct engine *engine, enum picture_id id, uint32_t item)
 static void take(void *context, uint32_t item, uint32_t thread)
 {
 	struct intake *intake = context;
+	item += intake->first_item;
 	bool ui = item >= intake->color_items;
 	take_rows(intake->engine, ui ? PICTURE_UI : PICTURE_ORIGINAL, ui ? item - intake->color_items : item);
 }
@@ -147,10 +150,21 @@ static void plan_look(struct engine *engine, struct intake *intake)
 		intake->hashes_capacity = intake->hashes ? rows : 0;
 		intake->hashed = false;
 	}
+	if (intake->looks && !intake->hash_row)
+		intake->hash_row = plan_level_kernels(plan_level_best())->hash_row;
 	intake->looks &= intake->hashes != NULL;
 	intake->compares = intake->looks && intake->hashed;
 	intake->hashed = false;
 	atomic_store(&intake->differs, false);
+}
+
+/* Blocks of rows up to the first that differs; the others are left to the pool. */
+static uint32_t look_at_rows(struct intake *intake, uint32_t items)
+{
+	uint32_t item = 0;
+	while (intake->compares && item < items && !atomic_load_explicit(&intake->differs, memory_order_relaxed))
+		take(intake, item++, 0);
+	return item;
 }
 
 /* All rows are there. */
@@ -162,7 +176,7 @@ static void conclude_look(struct engine *engine, struct intake *intake)
 		intake->not_before = LOOK_AGAIN_AFTER;
 	if (!intake->compares || differs)
 		return;
-	engine->damage.known = true;
+	engine->damage.known = engine->damage.found = true;
 	engine->damage.count = 0;
 	engine->content = engine->content_before;
 	engine->report.bytes_up -= intake->bytes;
@@ -210,7 +224,10 @@ static int run(struct engine *engine, struct error *error)
 	intake->engine = engine;
 	intake->color_items = items;
 	intake->under_way = true;
-	pool_start(executor->base.pool, take, intake, intake->ui >= 0 ? 2 * items : items);
+	items = intake->ui >= 0 ? 2 * items : items;
+	intake->first_item = 0;
+	intake->first_item = look_at_rows(intake, items);
+	pool_start(executor->base.pool, take, intake, items - intake->first_item);
 	intake->bytes = 4 * (uint64_t)engine->width * engine->height * (intake->ui >= 0 ? 2 : 1);
 	engine->report.bytes_up += intake->bytes;
 	return 0;
@@ -241,8 +258,9 @@ void cpu_finish_intake(struct engine *engine)
 
 static int analyse(struct engine *engine, struct error *error)
 {
+	const struct intake *intake = &cpu_of(engine)->intake;
 	/* What is as it was rests, and needs no look at its motion. */
-	if (cpu_of(engine)->intake.compares)
+	if (intake->compares && !atomic_load(&intake->differs))
 		cpu_finish_intake(engine);
 	int result = pass_analyse.run(engine, error);
 	cpu_finish_intake(engine);
