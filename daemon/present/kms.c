@@ -89,6 +89,8 @@ static void open_gl(struct kms *kms)
 	kms->gl = kms_gl_create(kms_device_get_fd(kms->device), &error);
 	if (!kms->gl)
 		log_info(kms->params.log, "%s", error.text);
+	else if (kms_can_fence(kms))
+		log_info(kms->params.log, "kms: flips wait for what GL draws by its fences");
 }
 
 /* On the thread that watches the cable. */

@@ -101,6 +101,8 @@ int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, st
 int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image);
 const struct presenter_context *kms_get_context(struct presenter *presenter);
 
+/* Does the controller wait until GL, which there is, has drawn a picture? */
+bool kms_can_fence(const struct kms *kms);
 /* The image was drawn and is to be shown: makes it smaller if it must be, and fences it if it is drawn still. */
 void kms_take_back(struct kms *kms, const struct presenter_image *image);
 void kms_release(struct presenter *presenter, const struct presenter_image *image);

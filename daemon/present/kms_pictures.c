@@ -84,8 +84,7 @@ static void try_size(struct kms *kms, const struct kms_buffer *buffer, uint32_t 
 				 kms->scales ? "enlarged by the display controller" : "as they are");
 }
 
-/* Does the controller wait until GL has drawn a picture? */
-static bool can_fence(const struct kms *kms)
+bool kms_can_fence(const struct kms *kms)
 {
 	return kms_gl_can_fence(kms->gl) && kms_device_takes_fences(kms->device);
 }
@@ -239,7 +238,7 @@ int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t he
 		return result;
 	if (!lend(kms, picture, &picture->in_gl, width, height, image))
 		kms_gl_blacken(kms->gl, &picture->gl_buffer);
-	image->fenced = can_fence(kms);
+	image->fenced = kms_can_fence(kms);
 	image->texture = picture->is_large ? picture->gl_large.texture : picture->gl_buffer.texture;
 	image->texture_x = picture->is_large ? 0 : picture->part.x;
 	image->texture_y = picture->is_large ? 0 : picture->part.y;

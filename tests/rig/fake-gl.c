@@ -6,10 +6,14 @@
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GL/glcorearb.h>
+#include <dlfcn.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
+#include <time.h>
 
 /* Of the kernel's drivers/dma-buf/sw_sync.c. */
 #define TIMELINES "/sys/kernel/debug/sync/sw_sync"
@@ -36,12 +40,32 @@ static struct {
 
 static int timeline = -1;
 static uint32_t signalled;
+static long delay_ms; /* 0: signalled by the test */
 
 bool fake_gl_open_fences(void)
 {
 	if (timeline < 0)
 		timeline = open(TIMELINES, O_RDWR | O_CLOEXEC);
 	return timeline >= 0;
+}
+
+/* Without a test that signals: after a while. */
+static void *signal_later(void *data)
+{
+	const struct timespec delay = {0, delay_ms * 1000000};
+	const uint32_t one = 1;
+	(void)data;
+	nanosleep(&delay, NULL);
+	if (ioctl(timeline, SW_SYNC_IOC_INC, &one) != 0)
+		perror("sw_sync");
+	return NULL;
+}
+
+static void start_signal(void)
+{
+	pthread_t thread;
+	if (delay_ms > 0 && pthread_create(&thread, NULL, signal_later, NULL) == 0)
+		pthread_detach(thread);
 }
 
 void fake_gl_signal(void)
@@ -68,6 +92,7 @@ static EGLint EGLAPIENTRY dup_fence(EGLDisplay display, EGLSyncKHR sync)
 	if (sync != (EGLSyncKHR)&fake_gl || ioctl(timeline, SW_SYNC_IOC_CREATE_FENCE, &data) != 0)
 		return EGL_NO_NATIVE_FENCE_FD_ANDROID;
 	fake_gl.fences++;
+	start_signal();
 	return data.fence;
 }
 
@@ -96,12 +121,18 @@ static void APIENTRY finish(void)
 	real.finish();
 }
 
-/* ---- what the linker puts before EGL ---- */
+/* ---- what stands before EGL ---- */
 
-function __real_eglGetProcAddress(const char *name);
-function __wrap_eglGetProcAddress(const char *name);
-const char *__real_eglQueryString(EGLDisplay display, EGLint name);
-const char *__wrap_eglQueryString(EGLDisplay display, EGLint name);
+typedef function (*find_function)(const char *name);
+typedef const char *(*query_function)(EGLDisplay display, EGLint name);
+
+static function find_next(const char *name)
+{
+	function next = NULL;
+	void *symbol = dlsym(RTLD_NEXT, name);
+	memcpy(&next, &symbol, sizeof(next));
+	return next;
+}
 
 static const struct {
 	const char *name;
@@ -117,24 +148,36 @@ static const struct {
 	{"eglDupNativeFenceFDANDROID", NULL, (function)dup_fence},
 };
 
-function __wrap_eglGetProcAddress(const char *name)
+function eglGetProcAddress(const char *name)
 {
+	const find_function next = (find_function)find_next("eglGetProcAddress");
 	for (size_t i = 0; i < sizeof(functions) / sizeof(functions[0]); i++) {
 		if (strcmp(name, functions[i].name) != 0)
 			continue;
 		if (functions[i].real)
-			*functions[i].real = __real_eglGetProcAddress(name);
+			*functions[i].real = next(name);
 		return functions[i].fake;
 	}
-	return __real_eglGetProcAddress(name);
+	return next(name);
 }
 
-const char *__wrap_eglQueryString(EGLDisplay display, EGLint name)
+const char *eglQueryString(EGLDisplay display, EGLint name)
 {
 	static char extensions[8192];
-	const char *text = __real_eglQueryString(display, name);
+	const char *text = ((query_function)find_next("eglQueryString"))(display, name);
 	if (name != EGL_EXTENSIONS || !fake_gl.has_fences || !text)
 		return text;
 	snprintf(extensions, sizeof(extensions), "%s EGL_ANDROID_native_fence_sync", text);
 	return extensions;
+}
+
+/* ---- before a program that knows nothing of it ---- */
+
+__attribute__((constructor)) static void start(void)
+{
+	const char *delay = getenv("FAKE_FENCES_MS");
+	if (!delay || !fake_gl_open_fences())
+		return;
+	delay_ms = atol(delay);
+	fake_gl.has_fences = true;
 }

@@ -2,8 +2,9 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * The GL of the machine, with a say of the test's: link with --wrap=eglGetProcAddress and --wrap=eglQueryString. Fences
- * are the kernel's own, of its timeline for tests (sw_sync), and signal when the test says so.
+ * The GL of the machine, with a say of the test's, whose functions stand before EGL's. Fences are the kernel's own, of
+ * its timeline for tests (sw_sync), and signal when the test says so. As a library that is loaded before a program
+ * (LD_PRELOAD) it only gives fences, which signal FAKE_FENCES_MS milliseconds later.
  */
 #ifndef PURSUIT_FAKE_GL_H
 #define PURSUIT_FAKE_GL_H

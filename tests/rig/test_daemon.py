@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The whole daemon on the kernel's virtual display; runs inside the rig (see run).
 
-usage: test_daemon.py PURSUITD PURSUIT EXAMPLE [TEST...]
+usage: test_daemon.py PURSUITD PURSUIT EXAMPLE [FENCES.so] [TEST...]
+
+FENCES.so, loaded before the daemon, gives it fences of a GPU (fake-gl.h).
 
 Each test says what it looks at from outside: the kernel's own state of the display, the daemon's status and log.
 """
@@ -15,6 +17,8 @@ import sys
 import time
 
 PURSUITD, PURSUIT, EXAMPLE = sys.argv[1:4]
+FENCES = [argument for argument in sys.argv[4:] if argument.endswith(".so")]
+TESTS = [argument for argument in sys.argv[4:] if argument not in FENCES]
 FOLDER = os.environ["TMPDIR"]
 SOCKET = os.path.join(FOLDER, "socket")
 STATE = "/sys/kernel/debug/dri/0/state"
@@ -158,9 +162,9 @@ def test_shows_and_restores():
               f"after {number.name} the console is back: {before}, {on_display()}")
 
 
-def scan_out(context, environment=None):
+def scan_out(context, environment=None, mode=MODE):
     """What the controller made of a client's frames, vblank by vblank, as its checksums; and the daemon's status."""
-    daemon = Daemon("--mode", MODE, "--context", context, environment=environment)
+    daemon = Daemon("--mode", mode, "--context", context, environment=environment)
     check(daemon.is_ready(), f"the daemon starts with context {context}")
     write(CHECKSUMS + "/control", "auto")
     data = os.open(CHECKSUMS + "/data", os.O_RDONLY | os.O_NONBLOCK)
@@ -193,6 +197,38 @@ def test_pictures_in_gl():
     check(len(set(seen)) > 40 and set(seen) == set(through_memory),
           f"the display gets the same bits: {len(seen)} and {len(through_memory)} vblanks, "
           f"{len(set(seen))} and {len(set(through_memory))} pictures, {len(set(seen) & set(through_memory))} alike")
+
+
+def test_fences():
+    """Each fence signals a millisecond after its picture was drawn: between flip and vblank."""
+    if not FENCES:
+        print("  skipped: there are no fences without GL")
+        return
+    plain, answer, log = scan_out("egl")
+    if "pictures stay in GL" not in log:
+        print("  skipped: no GL on this display:", log)
+        return
+    check("by its fences" not in log, "software has none")
+    seen, answer, log = scan_out("egl", {"LD_PRELOAD": FENCES[0], "FAKE_FENCES_MS": "1"})
+    check("by its fences" in log, f"they are used: {log}")
+    check(find(answer, "passes")["copy"] > 60, "pictures are drawn by GL")
+    check(find(answer, "vblanks") == find(answer, "vblanks_on_time"), "every vblank is on time")
+    check(find(answer, "lost_real_frames") == 0, "no real frame is lost")
+    check(len(set(seen)) > 40 and set(seen) == set(plain), f"the display gets the same bits: {len(set(seen))} pictures, "
+          f"{len(set(seen) & set(plain))} of {len(set(plain))} alike")
+    seen, answer, _ = scan_out("egl", {"LD_PRELOAD": FENCES[0], "FAKE_FENCES_MS": "20"})
+    check(find(answer, "late_flips") > 60, "flips that the GPU is late for are told as late")
+    check(find(answer, "lost_real_frames") == 0, "and no real frame is lost by it")
+    check(set(plain) <= set(seen), "all of them are shown")
+
+
+def test_larger_frames():
+    for context in ("cpu", "egl"):
+        seen, answer, log = scan_out(context, mode="320x180@120")
+        check("on 320x180: made smaller, to 3" in log, f"it is said: {log}")
+        check(find(answer, "vblanks") == find(answer, "vblanks_on_time"), "every vblank is on time")
+        check(find(answer, "lost_real_frames") == 0, "no real frame is lost")
+        check(len(set(seen)) > 40, f"{context}: pictures are shown: {len(set(seen))}")
 
 
 def test_no_gl_on_the_display():
@@ -323,7 +359,7 @@ def test_other_console():
 
 def main():
     for name, test in list(globals().items()):
-        if name.startswith("test_") and (not sys.argv[4:] or name in sys.argv[4:]):
+        if name.startswith("test_") and (not TESTS or name in TESTS):
             before = len(failures)
             test()
             print("ok    " if len(failures) == before else "FAILED", name, flush=True)
