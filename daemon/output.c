@@ -54,6 +54,13 @@ static void on_key(void *data, const struct presenter_key *key)
 	output_press_key(data, key);
 }
 
+/* With the lock: a vblank at which nothing was to be shown waits for the render thread if that wakes soon by itself. */
+static bool can_wait(const struct output *output, const struct presenter_flip *flip)
+{
+	return output->wakes_soon && flip->shown == PRESENTER_KEPT && !flip->late &&
+		   output->flip_count < OUTPUT_FLIPS / 2 && !output->params.lab;
+}
+
 /* On the presenter's thread. */
 static void on_flip(void *data, const struct presenter_flip *flip)
 {
@@ -64,9 +71,12 @@ static void on_flip(void *data, const struct presenter_flip *flip)
 		output->flips[output->flip_count++] = *flip;
 	else
 		output->flips[OUTPUT_FLIPS - 1].skipped++; /* a render thread that hangs this long has more to worry about */
-	output->woken = true;
-	pthread_cond_signal(&output->wake);
+	const bool wakes = !can_wait(output, flip);
+	output->woken |= wakes;
 	pthread_mutex_unlock(&output->lock);
+	/* Who is woken wants the lock first of all. */
+	if (wakes)
+		pthread_cond_signal(&output->wake);
 }
 
 /* ---- main thread ---- */
@@ -178,8 +188,9 @@ uint64_t output_beats(const struct output *output)
 void output_wake(struct output *output)
 {
 	pthread_mutex_lock(&output->lock);
-	output_wake_locked(output);
+	output->woken = true;
 	pthread_mutex_unlock(&output->lock);
+	pthread_cond_signal(&output->wake);
 }
 
 void output_toggle_view(struct output *output, uint32_t part)

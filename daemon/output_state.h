@@ -26,7 +26,8 @@ struct output {
 	pthread_mutex_t lock; /* the mailbox */
 	pthread_cond_t wake;
 	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed;
-	bool started; /* the thread has said whether it could start */
+	bool wakes_soon; /* the render thread, by itself, if nobody wakes it */
+	bool started;    /* the thread has said whether it could start */
 	int start_result;
 	struct error start_error;
 	struct stream *streams[OUTPUT_STREAMS]; /* referenced; in the order of opening */

@@ -9,6 +9,9 @@
 #include "daemon/output_state.h"
 #include "daemon/slices.h"
 
+/* What waits for so long hurts nobody. */
+#define SOON_NS UINT64_C(50000000)
+
 /* ---- called by the render thread's work ---- */
 
 static void record(void *data, const struct frame *frame)
@@ -56,12 +59,14 @@ static void publish_stats(struct output *output)
 	pthread_mutex_unlock(&output->stats_lock);
 }
 
-/* Sleeps until time_ns or until woken. */
+/* Sleeps until time_ns or until woken. What it would not read soon it does not sleep over. */
 static void wait_for_work(struct output *output, uint64_t time_ns)
 {
+	const bool soon = time_ns < clock_now(output->params.clock) + SOON_NS;
 	const struct timespec then = {(time_t)(time_ns / UINT64_C(1000000000)), (long)(time_ns % UINT64_C(1000000000))};
 	pthread_mutex_lock(&output->lock);
-	while (!output->woken && !output->stop) {
+	output->wakes_soon = soon;
+	while (!output->woken && !output->stop && (soon || output->flip_count == 0)) {
 		if (time_ns == RENDER_NEVER)
 			pthread_cond_wait(&output->wake, &output->lock);
 		else if (pthread_cond_timedwait(&output->wake, &output->lock, &then) == ETIMEDOUT)
