@@ -309,14 +309,23 @@ static int check_params(const struct import_params *params, struct import_summar
 }
 
 static struct recording_writer *create_writer(const struct import_params *params, const struct import_summary *summary,
-											  struct error *error)
+											  const char *path, struct error *error)
 {
 	char info[256];
 	snprintf(info, sizeof(info),
 			 "program=pursuit import\nfps=%" PRIu64 "/%" PRIu64 "\nnumber_offset=%" PRIu64 "\nmotion_span=%u\n",
 			 params->rate.frames, params->rate.seconds, summary->first, params->motion_span ? params->motion_span : 1);
-	const struct recording_writer_params writer = {.path = params->path, .info = info};
+	const struct recording_writer_params writer = {.path = path, .info = info};
 	return recording_writer_create(&writer, error);
+}
+
+/* Where it is written until it is whole: beside its place, unless that is a pipe or a device. To be freed. */
+static char *unfinished_path(const char *path)
+{
+	struct stat stat;
+	const bool is_file = lstat(path, &stat) < 0 || S_ISREG(stat.st_mode);
+	char *unfinished = NULL;
+	return asprintf(&unfinished, "%s%s", path, is_file ? ".part" : "") < 0 ? NULL : unfinished;
 }
 
 static void remove_regular(const char *path)
@@ -326,15 +335,13 @@ static void remove_regular(const char *path)
 		unlink(path);
 }
 
-int import_run(const struct import_params *params, struct import_summary *summary, struct error *error)
+static int write_all(const struct import_params *params, const char *path, struct import_summary *summary,
+					 struct error *error)
 {
 	uint64_t previous_real_ns = 0, frames;
 	struct error closing = {""};
-	*summary = (struct import_summary){0};
-	int result = check_params(params, summary, error);
-	if (result < 0)
-		return result;
-	struct recording_writer *writer = create_writer(params, summary, error);
+	int result = 0;
+	struct recording_writer *writer = create_writer(params, summary, path, error);
 	if (!writer)
 		return -EIO;
 	for (uint64_t number = summary->first; result == 0 && number <= summary->last; number++) {
@@ -344,9 +351,24 @@ int import_run(const struct import_params *params, struct import_summary *summar
 	}
 	recording_writer_counts(writer, &summary->bytes, &frames);
 	const int closed = recording_writer_close(&writer, result < 0 ? &closing : error);
-	if (result < 0) {
-		remove_regular(params->path);
+	result = result < 0 ? result : closed;
+	if (result < 0)
+		remove_regular(path);
+	return result;
+}
+
+int import_run(const struct import_params *params, struct import_summary *summary, struct error *error)
+{
+	*summary = (struct import_summary){0};
+	int result = check_params(params, summary, error);
+	if (result < 0)
 		return result;
-	}
-	return closed;
+	char *path = unfinished_path(params->path);
+	if (!path)
+		return error_set(error, -ENOMEM, "%s: out of memory", params->path);
+	result = write_all(params, path, summary, error);
+	if (result == 0 && strcmp(path, params->path) != 0 && rename(path, params->path) < 0)
+		result = error_set(error, -errno, "%s: cannot be renamed to %s: %s", path, params->path, strerror(errno));
+	free(path);
+	return result;
 }

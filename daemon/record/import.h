@@ -44,7 +44,10 @@ struct import_summary {
 	uint32_t width, height;
 };
 
-/* 0 or a negative errno with a sentence. */
+/*
+ * 0 or a negative errno with a sentence. A regular file is written as PATH.part and takes its place when it is whole:
+ * one that was there is kept if this fails.
+ */
 int import_run(const struct import_params *params, struct import_summary *summary, struct error *error);
 
 #endif

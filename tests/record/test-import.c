@@ -360,6 +360,23 @@ static void test_import_refusals(void)
 	CHECK(strstr(error.text, "/dev/full") && access("/dev/full", F_OK) == 0);
 }
 
+/* An import that fails leaves what was there before, and nothing else. */
+static void test_import_failure_keeps_the_old(void)
+{
+	char other[1100];
+	struct import_summary summary;
+	struct error error = {""};
+	size_t size = 0;
+	snprintf(other, sizeof(other), "%s", sample_path("e_%d.png"));
+	sample_write_file(sample_path("old.pursuit"), (const uint8_t *)"old", 3);
+	const struct import_params params = {.path = sample_path("old.pursuit"), .color = other, .rate = {30, 1}};
+	CHECK_INT(import_run(&params, &summary, &error), -EINVAL);
+	uint8_t *data = sample_read_file(sample_path("old.pursuit"), &size);
+	CHECK(size == 3 && memcmp(data, "old", 3) == 0);
+	free(data);
+	CHECK(access(sample_path("old.pursuit.part"), F_OK) != 0);
+}
+
 /* ---- export ---- */
 
 static void test_export_round_trip(void)
@@ -521,6 +538,7 @@ int main(void)
 	RUN(test_import_ndc);
 	RUN(test_import_ui_and_ids);
 	RUN(test_import_refusals);
+	RUN(test_import_failure_keeps_the_old);
 	RUN(test_y4m_codes);
 	RUN(test_y4m_failures);
 	sample_folder_remove();
