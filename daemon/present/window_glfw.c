@@ -61,23 +61,29 @@ static GLFWmonitor *find_monitor(const char *name)
 	return NULL;
 }
 
+/* Of the window, in pixels. */
+static int area_on(GLFWwindow *glfw, GLFWmonitor *monitor)
+{
+	int x, y, width, height, mx, my;
+	const GLFWvidmode *mode = glfwGetVideoMode(monitor);
+	glfwGetWindowPos(glfw, &x, &y);
+	glfwGetWindowSize(glfw, &width, &height);
+	glfwGetMonitorPos(monitor, &mx, &my);
+	const int right = x + width < mx + mode->width ? x + width : mx + mode->width;
+	const int bottom = y + height < my + mode->height ? y + height : my + mode->height;
+	const int across = right - (x > mx ? x : mx), down = bottom - (y > my ? y : my);
+	return across > 0 && down > 0 ? across * down : 0;
+}
+
 /* The one that most of the window is on. */
 static GLFWmonitor *monitor_under(GLFWwindow *glfw)
 {
-	int count = 0, x, y, width, height, most = -1;
+	int count = 0, most = -1;
 	GLFWmonitor **monitors = glfwGetMonitors(&count), *best = NULL;
 	if (glfwGetWindowMonitor(glfw))
 		return glfwGetWindowMonitor(glfw);
-	glfwGetWindowPos(glfw, &x, &y);
-	glfwGetWindowSize(glfw, &width, &height);
 	for (int i = 0; i < count; i++) {
-		int mx, my;
-		const GLFWvidmode *mode = glfwGetVideoMode(monitors[i]);
-		glfwGetMonitorPos(monitors[i], &mx, &my);
-		const int right = x + width < mx + mode->width ? x + width : mx + mode->width;
-		const int bottom = y + height < my + mode->height ? y + height : my + mode->height;
-		const int across = right - (x > mx ? x : mx), down = bottom - (y > my ? y : my);
-		const int area = across > 0 && down > 0 ? across * down : 0;
+		const int area = area_on(glfw, monitors[i]);
 		if (area > most) {
 			most = area;
 			best = monitors[i];
@@ -128,6 +134,7 @@ static void enter_fullscreen(struct window *window, GLFWmonitor *monitor)
 	}
 	glfwSetWindowMonitor(window->glfw, monitor, 0, 0, mode.width, mode.height, mode.refreshRate);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+	window->is_full = true;
 	window_say(window, "glfw: full screen on %s, %dx%d at %.2f Hz", glfwGetMonitorName(monitor), mode.width,
 			   mode.height, rate > 0.0 ? rate : mode.refreshRate);
 }
@@ -136,14 +143,29 @@ static void leave_fullscreen(struct window *window)
 {
 	glfwSetWindowMonitor(window->glfw, NULL, window->x, window->y, window->width, window->height, GLFW_DONT_CARE);
 	glfwSetInputMode(window->glfw, GLFW_CURSOR, GLFW_CURSOR_NORMAL);
+	window->is_full = false;
 	if (window->display)
 		x_mode_restore(&window->mode, window->display);
 }
 
-/* A monitor that was unplugged has taken full screen with it (GLFW makes a window of it); back when it is. */
+/* GLFW has made a window of it, which without a window manager may lie anywhere. */
+static void lose_fullscreen(struct window *window)
+{
+	int x, y;
+	leave_fullscreen(window);
+	GLFWmonitor *monitor = monitor_under(window->glfw);
+	if (!monitor || area_on(window->glfw, monitor) > 0)
+		return;
+	glfwGetMonitorPos(monitor, &x, &y);
+	glfwSetWindowPos(window->glfw, x, y);
+}
+
+/* A monitor that was unplugged has taken full screen with it; back when it is. */
 static void follow_monitors(struct window *window)
 {
 	GLFWmonitor *wished = window->fullscreen ? find_monitor(window->monitor) : NULL;
+	if (window->is_full && !glfwGetWindowMonitor(window->glfw))
+		lose_fullscreen(window);
 	if (wished && !glfwGetWindowMonitor(window->glfw))
 		enter_fullscreen(window, wished);
 }

@@ -38,6 +38,7 @@ struct window {
 	Display *display;          /* NULL: not X11 */
 	bool glx;
 	bool fullscreen;         /* wished for; it may not be while the monitor is unplugged */
+	bool is_full;            /* it was made so, and has not been told otherwise */
 	bool size_is_free;       /* nobody wished for one */
 	bool repeated;           /* the key event before a character was a repetition */
 	int x, y, width, height; /* of the window, for the way back from full screen */

@@ -15,7 +15,29 @@
 
 #include "tests/daemon/fixture.h"
 
-bool xvfb_start(struct xvfb *xvfb)
+#define MAX_ARGUMENTS 24u
+
+static void run_server(const struct xvfb *xvfb, const char *const *arguments, int number_fd)
+{
+	const int null = open("/dev/null", O_RDWR);
+	const char *all[MAX_ARGUMENTS + 4];
+	char fd[16];
+	size_t count = 0;
+	snprintf(fd, sizeof(fd), "%d", number_fd);
+	dup2(null, STDOUT_FILENO);
+	dup2(null, STDERR_FILENO);
+	prctl(PR_SET_PDEATHSIG, SIGKILL);
+	for (; arguments[count] && count < MAX_ARGUMENTS; count++)
+		all[count] = arguments[count];
+	all[count++] = "-displayfd";
+	all[count++] = fd;
+	all[count++] = xvfb->name;
+	all[count] = NULL;
+	execvp(all[0], (char *const *)(void *)all);
+	_exit(127);
+}
+
+bool xvfb_start_server(struct xvfb *xvfb, const char *const *arguments)
 {
 	int ends[2];
 	char number[16] = "";
@@ -26,21 +48,8 @@ bool xvfb_start(struct xvfb *xvfb)
 		return false;
 	fflush(NULL);
 	xvfb->pid = fork();
-	if (xvfb->pid == 0) {
-		const int null = open("/dev/null", O_RDWR);
-		char fd[16];
-		snprintf(fd, sizeof(fd), "%d", ends[1]);
-		dup2(null, STDOUT_FILENO);
-		dup2(null, STDERR_FILENO);
-		prctl(PR_SET_PDEATHSIG, SIGKILL);
-		const char *const arguments[] = {"Xvfb",       "-displayfd", fd,    "-screen", "0",
-										 "800x600x24", "-nolisten",  "tcp", NULL,      NULL};
-		const char *arguments_of[10];
-		memcpy(arguments_of, arguments, sizeof(arguments));
-		arguments_of[8] = xvfb->name;
-		execvp("Xvfb", (char *const *)(void *)arguments_of);
-		_exit(127);
-	}
+	if (xvfb->pid == 0)
+		run_server(xvfb, arguments, ends[1]);
 	close(ends[1]);
 	const ssize_t length = read(ends[0], number, sizeof(number) - 1);
 	close(ends[0]);
@@ -53,6 +62,12 @@ bool xvfb_start(struct xvfb *xvfb)
 	if (!xvfb->display)
 		xvfb_stop(xvfb);
 	return xvfb->display != NULL;
+}
+
+bool xvfb_start(struct xvfb *xvfb)
+{
+	static const char *const arguments[] = {"Xvfb", "-screen", "0", "800x600x24", "-nolisten", "tcp", NULL};
+	return xvfb_start_server(xvfb, arguments);
 }
 
 void xvfb_stop(struct xvfb *xvfb)

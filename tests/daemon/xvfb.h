@@ -18,6 +18,8 @@ struct xvfb {
 
 /* False: Xvfb is not installed or does not start. Zeroed, or stopped: then it comes back under the name that it had. */
 bool xvfb_start(struct xvfb *xvfb);
+/* The same with another X server: its program and arguments, NULL-terminated. */
+bool xvfb_start_server(struct xvfb *xvfb, const char *const *arguments);
 void xvfb_stop(struct xvfb *xvfb);
 
 /* The window with this title, 0 if there is none after 60 s. */

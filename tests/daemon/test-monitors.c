@@ -1,0 +1,191 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * The GLFW presenter and monitors, under Xorg: full screen on the one that was chosen, in its mode that is nearest to
+ * the rate wished for, without it when it is unplugged, and the desktop's mode as it was in the end.
+ */
+#include <signal.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "client/pursuit.h"
+#include "tests/daemon/fixture.h"
+#include "tests/daemon/xorg.h"
+
+#define WIDTH XORG_WIDTH
+#define HEIGHT XORG_HEIGHT
+#define PATIENCE_FRAMES 800 /* 20 s */
+
+static struct fixture fixture;
+static struct xvfb server;
+static struct pursuit_stream *stream;
+
+/* No two neighbours alike. */
+static uint32_t color_at(uint32_t x, uint32_t y)
+{
+	return (x * 7 + y * 31) * 2654435761u >> 8;
+}
+
+static void submit_one(void)
+{
+	struct pursuit_frame *frame = pursuit_acquire(stream);
+	for (uint32_t y = 0; frame && y < HEIGHT; y++) {
+		uint32_t *color = (uint32_t *)(void *)(frame->color.data + y * frame->color.stride);
+		for (uint32_t x = 0; x < WIDTH; x++)
+			color[x] = 0xff000000u | color_at(x, y);
+		memset(frame->depth.data + y * frame->depth.stride, 0, (size_t)WIDTH * 4);
+		memset(frame->motion.data + y * frame->motion.stride, 0, (size_t)WIDTH * 8);
+	}
+	if (frame)
+		pursuit_submit(stream, frame);
+	sleep_ms(25);
+}
+
+/* Plays until a place of the desktop shows this pixel of the picture. */
+static bool play_until_seen(uint32_t desktop_x, uint32_t desktop_y, uint32_t color)
+{
+	for (int i = 0; i < PATIENCE_FRAMES; i++) {
+		if (xvfb_pixel(&server, DefaultRootWindow(server.display), desktop_x, desktop_y) == color)
+			return true;
+		submit_one();
+	}
+	return false;
+}
+
+/* All of the picture on the monitor at the right, to the bit. */
+static bool fills_the_right_monitor(void)
+{
+	static uint32_t pixels[2 * WIDTH * HEIGHT];
+	if (!play_until_seen(2 * WIDTH - 1, HEIGHT - 1, color_at(WIDTH - 1, HEIGHT - 1)) ||
+		!xvfb_capture(&server, DefaultRootWindow(server.display), 2 * WIDTH, HEIGHT, pixels))
+		return false;
+	uint32_t wrong = 0;
+	for (uint32_t y = 0; y < HEIGHT; y++)
+		for (uint32_t x = 0; x < WIDTH; x++)
+			wrong += pixels[y * 2 * WIDTH + WIDTH + x] != color_at(x, y);
+	CHECK_INT(wrong, 0);
+	return true;
+}
+
+static bool wait_for_rate(const char *monitor, double rate)
+{
+	for (int i = 0; i < 400; i++) {
+		if (fabs(xorg_rate(monitor) - rate) < 0.02)
+			return true;
+		sleep_ms(50);
+	}
+	fprintf(stderr, "%s is at %.2f Hz\n", monitor, xorg_rate(monitor));
+	return false;
+}
+
+/* The daemon, and a game if there is one to be. */
+static void start(const char *monitor, const char *refresh, const char *full)
+{
+	const char *const arguments[] = {"--present", "glfw,headless", "--monitor", monitor,
+									 "--refresh", refresh,         full,        NULL};
+	const struct pursuit_stream_params params = {.width = WIDTH,
+												 .height = HEIGHT,
+												 .depth_format = PURSUIT_DEPTH_FLOAT32,
+												 .motion_format = PURSUIT_MOTION_FLOAT32,
+												 .socket_path = fixture.socket};
+	unlink(fixture.log);
+	fixture_start(&fixture, arguments);
+	stream = pursuit_open(&params);
+}
+
+static void stop(void)
+{
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+	pursuit_close(&stream);
+}
+
+static void test_chosen_monitor_at_120(void)
+{
+	start("DUMMY1", "120", "--fullscreen");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(wait_for_rate("DUMMY0", XORG_USUAL_HZ));
+	CHECK(fixture_logged(&fixture, "glfw: full screen on DUMMY1, 800x600 at 120.00 Hz"));
+	CHECK(fills_the_right_monitor());
+	stop();
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
+static void test_nearest_rate(void)
+{
+	start("DUMMY0", "83", "--fullscreen");
+	CHECK(wait_for_rate("DUMMY0", 85.14));
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+	stop();
+	CHECK(wait_for_rate("DUMMY0", XORG_USUAL_HZ));
+}
+
+static void test_in_and_out_by_key(void)
+{
+	start("DUMMY1", "120", "--no-fullscreen");
+	Window window = xvfb_find(&server, "Pursuit");
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+	xvfb_press(&server, window, "f");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(fills_the_right_monitor());
+	xvfb_press(&server, window, "f");
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+	xvfb_press(&server, window, "f");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	xvfb_press(&server, window, "q");
+	CHECK_INT(fixture_join(&fixture), 0);
+	pursuit_close(&stream);
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
+/* A window elsewhere while it is away, and full screen in the mode of before when it is back. */
+static void test_unplugged(void)
+{
+	start("DUMMY1", "120", "--fullscreen");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(fills_the_right_monitor());
+	CHECK(xorg_unplug());
+	CHECK(wait_for_rate("DUMMY1", 0.0));
+	CHECK(play_until_seen(300, 200, color_at(300, 200)));
+	CHECK(xorg_plug());
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(fills_the_right_monitor());
+	stop();
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
+/* It dies while it is in a mode that full screen chose, and another one comes. */
+static void test_server_dies(void)
+{
+	start("DUMMY1", "120", "--fullscreen");
+	for (int i = 0; i < 2; i++) {
+		CHECK(wait_for_rate("DUMMY1", 120.0));
+		CHECK(fills_the_right_monitor());
+		xvfb_stop(&server);
+		CHECK(fixture_logged(&fixture, "headless presents now"));
+		CHECK(xorg_start(&server, fixture.folder));
+	}
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(fills_the_right_monitor());
+	stop();
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
+int main(int argc, char **argv)
+{
+	(void)argc;
+	fixture_init(&fixture, argv[1]);
+	if (!xorg_start(&server, fixture.folder)) {
+		fixture_finish(&fixture);
+		SKIP("no Xorg with the driver dummy, or no xrandr (Debian: xserver-xorg-core, xserver-xorg-video-dummy, "
+			 "x11-xserver-utils)");
+	}
+	RUN(test_chosen_monitor_at_120);
+	RUN(test_nearest_rate);
+	RUN(test_in_and_out_by_key);
+	RUN(test_unplugged);
+	RUN(test_server_dies);
+	xvfb_stop(&server);
+	fixture_finish(&fixture);
+	return test_result();
+}
