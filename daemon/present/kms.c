@@ -14,6 +14,7 @@
 #define GUARD_NS (MS + MS / 5)
 /* Made before the first picture; more as they are needed. */
 #define FIRST_BUFFERS 3u
+#define PAGE_BYTES 4096u
 #define STACK_BYTES ((size_t)256 * 1024)
 
 /* ---- life ---- */
@@ -127,9 +128,17 @@ static bool kms_is_possible(const struct presenter_params *params)
 	return kms_cable_is_plugged(params->options.device, params->options.connector);
 }
 
+/* On pages of its own, to be locked. */
+static struct kms *allocate(void)
+{
+	const size_t size = (sizeof(struct kms) + PAGE_BYTES - 1) / PAGE_BYTES * PAGE_BYTES;
+	struct kms *kms = aligned_alloc(PAGE_BYTES, size);
+	return kms ? memset(kms, 0, size) : NULL;
+}
+
 static struct presenter *kms_create(const struct presenter_params *params, struct error *error)
 {
-	struct kms *kms = calloc(1, sizeof(*kms));
+	struct kms *kms = allocate();
 	char mode[48];
 	if (!kms) {
 		error_set(error, -ENOMEM, "kms: out of memory");

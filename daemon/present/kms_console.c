@@ -31,6 +31,14 @@ static int open_signals(void)
 	return signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC);
 }
 
+/* Of a terminal that was watched before: nobody waits for an answer any more. */
+static void forget_signals(int signals)
+{
+	struct signalfd_siginfo info;
+	while (read(signals, &info, sizeof(info)) == (ssize_t)sizeof(info))
+		continue;
+}
+
 static int set_mode(int tty, char mode)
 {
 	const struct vt_mode wanted = {.mode = mode, .relsig = LEAVE_SIGNAL, .acqsig = RETURN_SIGNAL};
@@ -44,6 +52,7 @@ void kms_console_init(struct kms_console *console, const struct log *log)
 	console->tty = open("/dev/tty", O_RDWR | O_CLOEXEC | O_NOCTTY);
 	if (console->tty >= 0 && ioctl(console->tty, VT_GETMODE, &mode) == 0 && signals_are_blocked()) {
 		console->signals = open_signals();
+		forget_signals(console->signals);
 		if (console->signals >= 0 && set_mode(console->tty, VT_PROCESS) == 0)
 			return;
 		log_warning(log, "kms: switching between consoles is not watched: %s", strerror(errno));
@@ -74,7 +83,8 @@ int kms_console_get_fd(const struct kms_console *console)
 enum kms_console_event kms_console_read(struct kms_console *console)
 {
 	struct signalfd_siginfo info;
-	if (read(console->signals, &info, sizeof(info)) != (ssize_t)sizeof(info))
+	/* Not what somebody else sends. */
+	if (read(console->signals, &info, sizeof(info)) != (ssize_t)sizeof(info) || info.ssi_code != SI_KERNEL)
 		return KMS_CONSOLE_NOTHING;
 	if (info.ssi_signo == LEAVE_SIGNAL)
 		return KMS_CONSOLE_LEAVE;

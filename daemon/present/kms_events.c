@@ -150,12 +150,11 @@ static int light_up_again(struct kms *kms, struct error *error)
 	const struct scanout *scanout = &kms->scanout;
 	const struct kms_buffer *buffer =
 		scanout->shown.any ? &kms->pictures[scanout->shown.image].shown->buffer : &kms->backdrop;
-	pthread_mutex_unlock(&kms->lock);
 	int result = kms_device_return(kms->device);
 	if (result < 0)
-		error_set(error, result, "another program has taken the display");
-	else
-		result = kms_device_show(kms->device, buffer, error);
+		return error_set(error, result, "another program has taken the display");
+	pthread_mutex_unlock(&kms->lock);
+	result = kms_device_show(kms->device, buffer, error);
 	pthread_mutex_lock(&kms->lock);
 	return result;
 }
@@ -168,10 +167,11 @@ static void come_back(struct kms *kms)
 		return;
 	if (light_up_again(kms, &error) < 0)
 		kms_lose(kms, error.text);
-	kms->away = false;
-	if (kms->lost || (kms->running && kms_anchor(kms) < 0))
+	else if (kms->running && kms_anchor(kms) < 0)
 		kms_lose(kms, "it counts no vblanks any more");
-	log_info(kms->params.log, "kms: back on display");
+	else
+		log_info(kms->params.log, "kms: back on display");
+	kms->away = false;
 }
 
 /* ---- what the user hears ---- */
@@ -265,11 +265,20 @@ static void act(struct kms *kms, const struct pollfd *fds)
 	act_on_time(kms);
 }
 
+static bool get_stack(void **stack, size_t *size)
+{
+	pthread_attr_t attributes;
+	if (pthread_getattr_np(pthread_self(), &attributes) != 0)
+		return false;
+	const bool known = pthread_attr_getstack(&attributes, stack, size) == 0;
+	pthread_attr_destroy(&attributes);
+	return known;
+}
+
 /* What it measures is the display, and it runs for microseconds a vblank. Not permitted to most. */
 static void prepare_thread(const struct kms *kms)
 {
 	const struct sched_param priority = {.sched_priority = 1};
-	pthread_attr_t attributes;
 	void *stack;
 	size_t size;
 
@@ -278,13 +287,19 @@ static void prepare_thread(const struct kms *kms)
 	if (pthread_setschedparam(pthread_self(), SCHED_RR, &priority) != 0)
 		log_info(kms->params.log,
 				 "kms: flips without real-time priority (RLIMIT_RTPRIO is 0); a busy machine may miss some");
-	const bool known = pthread_getattr_np(pthread_self(), &attributes) == 0;
-	if (known && pthread_attr_getstack(&attributes, &stack, &size) == 0 &&
-		(mlock(kms, sizeof(*kms)) != 0 || mlock(stack, size) != 0))
+	if (get_stack(&stack, &size) && (mlock(kms, sizeof(*kms)) != 0 || mlock(stack, size) != 0))
 		log_info(kms->params.log,
 				 "kms: flips without locked memory (RLIMIT_MEMLOCK); a machine short of it may miss some");
-	if (known)
-		pthread_attr_destroy(&attributes);
+}
+
+/* Memory that is freed, and stacks that the C library keeps, would stay locked. */
+static void unlock_memory(const struct kms *kms)
+{
+	void *stack;
+	size_t size;
+	munlock(kms, sizeof(*kms));
+	if (get_stack(&stack, &size))
+		munlock(stack, size);
 }
 
 void *kms_run(void *data)
@@ -313,5 +328,6 @@ void *kms_run(void *data)
 			act(kms, fds);
 	}
 	pthread_mutex_unlock(&kms->lock);
+	unlock_memory(kms);
 	return NULL;
 }

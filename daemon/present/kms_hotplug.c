@@ -3,6 +3,7 @@
 
 #include "daemon/present/kms_hotplug.h"
 
+#include <errno.h>
 #include <linux/netlink.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -38,6 +39,10 @@ bool kms_hotplug_read(int fd)
 		struct sockaddr_nl sender = {.nl_pid = 1};
 		socklen_t size = sizeof(sender);
 		const ssize_t length = recvfrom(fd, message, sizeof(message) - 1, 0, (struct sockaddr *)&sender, &size);
+		if (length < 0 && errno == ENOBUFS) {
+			any = true; /* there were too many to keep */
+			continue;
+		}
 		if (length <= 0)
 			return any;
 		message[length] = 0;

@@ -70,7 +70,7 @@ static void try_size(struct kms *kms, const struct kms_buffer *buffer, uint32_t 
 	const bool large = is_large(kms, width, height), small = part->width < mode->width || part->height < mode->height;
 	pthread_mutex_lock(&kms->lock);
 	const bool ours = !kms->away;
-	kms->scales = !large && small && kms_device_can_scale(kms->device, buffer, part);
+	kms->scales = ours && !large && small && kms_device_can_scale(kms->device, buffer, part);
 	pthread_mutex_unlock(&kms->lock);
 	if (!ours)
 		return; /* asked again when the display is */

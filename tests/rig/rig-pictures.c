@@ -315,6 +315,20 @@ static uint32_t open_files(void)
 	return count;
 }
 
+/* A line of this process's /proc/self/status. */
+static long status_of(const char *name)
+{
+	FILE *file = fopen("/proc/self/status", "re");
+	char line[256];
+	long value = -1;
+	while (file && fgets(line, sizeof(line), file))
+		if (strncmp(line, name, strlen(name)) == 0)
+			value = atol(line + strlen(name));
+	if (file)
+		fclose(file);
+	return value;
+}
+
 static void show_one_and_go(const char *mode, bool share_gl)
 {
 	struct presenter *presenter = open_presenter(mode, share_gl);
@@ -339,6 +353,8 @@ static void test_one_after_another(void)
 	for (uint32_t i = 0; i < 9; i++)
 		show_one_and_go(modes[i % 3], i % 2 == 0);
 	CHECK_INT(open_files(), before);
+	CHECK_INT(status_of("Threads:"), 1);
+	CHECK_INT(status_of("VmLck:"), 0);
 }
 
 int main(void)
