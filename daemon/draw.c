@@ -419,6 +419,7 @@ void draw_real(struct render *render, uint64_t now_ns)
 void draw_empty(struct render *render, uint64_t vblank)
 {
 	const struct presenter_impl *impl = render->presenter->impl;
+	const uint64_t start_ns = clock_now(render->clock);
 	struct presenter_image image;
 	uint32_t width = EMPTY_WIDTH, height = EMPTY_HEIGHT;
 	if (render->begun)
@@ -429,6 +430,7 @@ void draw_empty(struct render *render, uint64_t vblank)
 	image.holds = 0;
 	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
 	view_draw(render, &image);
+	add_cost(render, &render->empty_cost, start_ns);
 	render->front_black = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
 	render->front_plain &= !render->front_black;
 	if (!render->front_black)

@@ -294,6 +294,11 @@ static bool shows_what_stays(const struct render *render)
 	return render->front_plain || !render->begun || !render->engine;
 }
 
+static uint64_t stay_cost(const struct render *render)
+{
+	return estimate(render, wants_black(render) ? &render->empty_cost : &render->plain_cost);
+}
+
 static void draw_what_stays(struct render *render, uint64_t vblank)
 {
 	if (wants_black(render))
@@ -323,7 +328,10 @@ static void pause_once(struct render *render)
 		render->stay_tries = 0;
 	}
 	if (render->pause_vblanks >= PLAIN_AFTER && !shows_what_stays(render) && render->stay_tries++ < STAY_TRIES) {
-		draw_what_stays(render, vblank);
+		/* Not for one that it misses for sure, as it has just missed one perhaps. */
+		const uint64_t first = grid_at_or_after(&render->grid, clock_now(render->clock) + stay_cost(render));
+		render_plan_pause_until(render, first + 1);
+		draw_what_stays(render, later_of(vblank, first));
 		render->pause_vblanks = PLAIN_AFTER;
 	}
 	if (render->pause_vblanks >= SLEEP_AFTER)
@@ -333,7 +341,7 @@ static void pause_once(struct render *render)
 /* The picture that stays is drawn again, as the view is now, or that of another stream; then all sleeps again. */
 static void draw_still_anew(struct render *render, uint64_t now_ns)
 {
-	const uint64_t cost = render->show_held ? render_real_cost(render) : estimate(render, &render->plain_cost);
+	const uint64_t cost = render->show_held ? render_real_cost(render) : stay_cost(render);
 	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + cost);
 	render->redraw = false;
 	if ((!wants_black(render) && !render->begun && !render->show_held) || !render->engine)

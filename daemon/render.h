@@ -91,7 +91,7 @@ struct render {
 		uint32_t pictures;          /* queued, or without room for them, since the last vblank that was reported */
 		uint64_t first_ns, last_ns; /* when that was */
 	} unanswered;
-	struct cost real_cost, between_cost, plain_cost;
+	struct cost real_cost, between_cost, plain_cost, empty_cost;
 	struct busy busy; /* with pictures other than real ones */
 	struct governor governor;
 	bool passes_through;   /* the engine makes nothing of frames but a picture */

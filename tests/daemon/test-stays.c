@@ -25,7 +25,14 @@ static struct {
 	struct render render;
 	struct picture picture;
 	unsigned refusals, refused, taken;
+	uint64_t drawing_ns; /* that a picture takes */
 } world;
+
+static int acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
+{
+	clock_wait_until(&world.clock.clock, clock_now(&world.clock.clock) + world.drawing_ns);
+	return pictures_acquire(presenter, width, height, image);
+}
 
 static int present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
 				   uint64_t serial)
@@ -57,6 +64,7 @@ static void world_init(void)
 	CHECK_INT(settings_set(&world.settings, "context", "cpu", &error), 0);
 	world.impl = presenter_headless;
 	world.impl.present = present;
+	world.impl.acquire = acquire;
 	pictures_init(&world.pictures, &world.impl, &params);
 	struct render *render = &world.render;
 	*render = (struct render){.settings = &world.settings,
@@ -125,6 +133,31 @@ static void test_the_view_changes_while_nothing_moves(void)
 	world_finish();
 }
 
+/* However long it takes to draw: what was learned at the first attempt counts at the next. */
+static void test_a_slow_picture(void)
+{
+	for (uint64_t drawing_ns = 1 * MS; drawing_ns < 400 * MS; drawing_ns = drawing_ns * 5 / 2) {
+		world_init();
+		run(10);
+		world.drawing_ns = drawing_ns;
+		render_set_view(&world.render, VIEW_HELP);
+		run(200);
+		CHECK(world.taken <= 3);
+		CHECK(world.pictures.flips.has_front && world.pictures.flips.front.serial == world.render.serial);
+		CHECK(world.render.paused && !world.pictures.running);
+		world_finish();
+
+		world_init();
+		world.drawing_ns = drawing_ns;
+		show_boosted();
+		run(200);
+		CHECK(world.taken <= 3);
+		CHECK(world.render.front_plain && world.pictures.flips.front.serial == world.render.serial);
+		CHECK(world.render.paused && !world.pictures.running);
+		world_finish();
+	}
+}
+
 static void test_a_boosted_picture_does_not_stay(void)
 {
 	world_init();
@@ -155,6 +188,7 @@ static void test_a_presenter_that_takes_nothing(void)
 int main(void)
 {
 	RUN(test_the_view_changes_while_nothing_moves);
+	RUN(test_a_slow_picture);
 	RUN(test_a_boosted_picture_does_not_stay);
 	RUN(test_a_presenter_that_takes_nothing);
 	return test_result();
