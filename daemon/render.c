@@ -29,8 +29,6 @@ int render_start(struct render *render, struct error *error)
 	const struct tee_params params = {
 		.path = settings->tee,
 		.log = render->log,
-		.refresh_numerator = settings->refresh_numerator,
-		.refresh_denominator = settings->refresh_denominator,
 	};
 	if (*settings->tee) {
 		render->tee = tee_create(&params, error);
@@ -200,7 +198,7 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 	render->unanswered.pictures = 0;
 	showing_flip(&render->showing, flip);
 	if (render->tee)
-		tee_flip(render->tee, flip);
+		tee_flip(render->tee, flip, &render->grid);
 	if (render->lab)
 		tell_lab(render, flip);
 }

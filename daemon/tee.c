@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <inttypes.h>
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -34,7 +35,8 @@ struct tee {
 	pthread_mutex_t lock; /* for all below but `video` */
 	pthread_cond_t wake;
 	bool stop, failed, drop_said;
-	uint32_t width, height; /* of the first picture; 0: none yet */
+	uint32_t width, height;    /* of the first picture; 0: none yet */
+	uint32_t rate, rate_scale; /* of the first vblank; 0: none yet */
 	struct tee_picture pictures[PICTURES];
 	struct {
 		uint32_t picture;
@@ -65,8 +67,8 @@ static int write_video(struct tee *tee, const struct tee_picture *picture, struc
 	const struct y4m_params params = {.path = tee->path,
 									  .width = tee->width,
 									  .height = tee->height,
-									  .rate = (uint32_t)tee->params.refresh_numerator,
-									  .rate_scale = (uint32_t)tee->params.refresh_denominator,
+									  .rate = tee->rate,
+									  .rate_scale = tee->rate_scale,
 									  .chroma = 444};
 	if (!tee->video)
 		tee->video = y4m_create(&params, error);
@@ -159,12 +161,23 @@ void tee_add(struct tee *tee, const struct presenter_image *image, uint64_t grou
 	pthread_mutex_unlock(&tee->lock);
 }
 
-void tee_flip(struct tee *tee, const struct presenter_flip *flip)
+/* That of a grid that was learned, in thousandths of a hertz. */
+static void set_rate(struct tee *tee, const struct grid *grid)
+{
+	const bool fits = grid->numerator <= UINT32_MAX && grid->denominator <= UINT32_MAX;
+	const uint32_t thousandths = (uint32_t)lround(1e12 / grid_period_ns(grid)), scale = thousandths % 1000 ? 1000 : 1;
+	tee->rate = fits ? (uint32_t)grid->numerator : thousandths / (1000 / scale);
+	tee->rate_scale = fits ? (uint32_t)grid->denominator : scale;
+}
+
+void tee_flip(struct tee *tee, const struct presenter_flip *flip, const struct grid *grid)
 {
 	bool first_drop = false;
 	if (flip->serial == 0)
 		return;
 	pthread_mutex_lock(&tee->lock);
+	if (tee->rate == 0)
+		set_rate(tee, grid);
 	uint32_t found = PICTURES;
 	for (uint32_t i = 0; i < PICTURES; i++) {
 		if (tee->pictures[i].serial == flip->serial)

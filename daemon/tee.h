@@ -13,6 +13,7 @@
 
 #include "daemon/error.h"
 #include "daemon/log.h"
+#include "daemon/present/grid.h"
 #include "daemon/present/presenter.h"
 
 struct tee;
@@ -20,8 +21,6 @@ struct tee;
 struct tee_params {
 	const char *path; /* of the video; with a % a pattern like "out/%06d.png". Times: PATH.csv, or out/times.csv */
 	const struct log *log;
-	uint64_t refresh_numerator; /* of the video */
-	uint64_t refresh_denominator;
 };
 
 /* Opens both files. NULL with a sentence. */
@@ -36,7 +35,7 @@ void tee_destroy(struct tee **tee);
 
 /* A picture that was given to the presenter and may be shown. */
 void tee_add(struct tee *tee, const struct presenter_image *image, uint64_t group, uint64_t serial);
-/* A vblank is over. */
-void tee_flip(struct tee *tee, const struct presenter_flip *flip);
+/* A vblank of this grid is over. The video's rate is that of the display at the first one. */
+void tee_flip(struct tee *tee, const struct presenter_flip *flip, const struct grid *grid);
 
 #endif
