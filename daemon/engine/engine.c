@@ -94,10 +94,6 @@ static void begin_frame(struct engine *engine, const struct frame *frame, const 
 	struct executor *executor = engine->executor;
 	executor->ops->drop_times(executor);
 	report_begin(&engine->report, frame->header.frame_id, executor->ops->time_source(executor));
-	if (engine->method->keeps_previous && engine->begun) {
-		executor->ops->keep_original(executor);
-		engine->stream = 0;
-	}
 	/* A frame of another stream is not the frame before. */
 	if (engine->sequence != frame->stream) {
 		pixel_state_forget(&engine->pixels);

@@ -41,7 +41,6 @@ enum pass_id {
  */
 enum picture_id {
 	PICTURE_ORIGINAL = 0, /* the real frame */
-	PICTURE_PREVIOUS,     /* the one before it, for methods that keep it */
 	PICTURE_REAL,         /* E, valid if engine->compensated */
 	PICTURE_BETWEEN,      /* B, the same */
 	PICTURE_LOW,          /* L, where it was asked for */
@@ -68,8 +67,6 @@ struct executor_ops {
 	/* Once before each engine_begin() and engine_render(). 0, or -EIO with a sentence: all is lost. */
 	int (*enter)(struct executor *executor, struct error *error);
 	void (*destroy)(struct executor **executor);
-	/* What was ORIGINAL becomes PREVIOUS; ORIGINAL is undefined until the next upload. */
-	void (*keep_original)(struct executor *executor);
 	/* Before engine_begin() returns, whatever it returns: nothing reads the frame's planes any more. */
 	void (*release_planes)(struct engine *engine);
 	/* Everything asked for is on its way, though nobody waits for it. */

@@ -15,7 +15,6 @@ struct method {
 	bool halves_cells;       /* its finest cells are half of those asked for, at least 4 pixels */
 	bool blurs_everywhere;   /* unless the blur is off */
 	uint32_t lag;            /* real frames that it shows late */
-	bool keeps_previous;     /* wants PICTURE_PREVIOUS; undefined for the first frame and where the size changes */
 	/* Colour and UI are uploaded; the frame's planes are still there. 0 or a negative errno with a sentence. */
 	int (*begin)(struct engine *engine, struct error *error);
 	/* Makes the picture, without UI, and says where it is. */

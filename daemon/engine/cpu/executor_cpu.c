@@ -41,17 +41,6 @@ static void destroy(struct executor **executor)
 	*executor = NULL;
 }
 
-static void keep_original(struct executor *executor)
-{
-	struct executor_cpu *cpu = self(executor);
-	layers_show(&cpu->layers, PICTURE_ORIGINAL, &cpu->pictures[PICTURE_ORIGINAL], cpu->base.pool);
-	layers_clear(&cpu->layers);
-	struct canvas kept = cpu->pictures[PICTURE_ORIGINAL];
-	cpu->pictures[PICTURE_ORIGINAL] = cpu->pictures[PICTURE_PREVIOUS];
-	cpu->pictures[PICTURE_PREVIOUS] = kept;
-	cpu->contents.known = false;
-}
-
 static void flush(struct executor *executor)
 {
 }
@@ -122,7 +111,6 @@ static const struct executor_ops ops = {
 		},
 	.enter = enter,
 	.destroy = destroy,
-	.keep_original = keep_original,
 	.release_planes = release_planes,
 	.flush = flush,
 	.finish = finish,

@@ -75,13 +75,6 @@ static void destroy(struct executor **executor)
 	*executor = NULL;
 }
 
-static void keep_original(struct executor *executor)
-{
-	struct target *pictures = self(executor)->pictures, kept = pictures[PICTURE_ORIGINAL];
-	pictures[PICTURE_ORIGINAL] = pictures[PICTURE_PREVIOUS];
-	pictures[PICTURE_PREVIOUS] = kept;
-}
-
 /* GL has copied what it was given. */
 static void release_planes(struct engine *engine)
 {
@@ -162,7 +155,6 @@ static const struct executor_ops ops = {
 		},
 	.enter = enter,
 	.destroy = destroy,
-	.keep_original = keep_original,
 	.release_planes = release_planes,
 	.flush = flush,
 	.finish = finish,
