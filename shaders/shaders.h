@@ -12,6 +12,7 @@ extern const char shader_tiles_vert[];
 extern const char shader_pyramid_frag[];
 extern const char shader_compensate_frag[];
 extern const char shader_warp_frag[];
+extern const char shader_copy_frag[];
 extern const char shader_ui_frag[];
 extern const char shader_analyse_comp[];
 

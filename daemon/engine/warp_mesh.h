@@ -59,7 +59,7 @@ struct warp_mesh {
 	bool test_all; /* set by the caller: sorts take all triangles for such that may lie over each other */
 	bool keep_order;
 	bool too_wild; /* drawing would cost too much; the lists are not filled */
-	struct warp_list doubtful;
+	struct warp_list doubtful; /* within the tiles of `low` */
 };
 
 /*

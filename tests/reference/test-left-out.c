@@ -60,6 +60,7 @@ static void doubt_all(struct warp_mesh *mesh)
 			put_list(mesh, &count, mesh->triangles + i);
 	mesh->plain = mesh->torn = mesh->folded = mesh->folded_torn = (struct warp_list){0, 0};
 	mesh->doubtful = (struct warp_list){0, count};
+	tiles_mark_all(&mesh->low);
 	mesh->list_count = count;
 	mesh->sorted++;
 }

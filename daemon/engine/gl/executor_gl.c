@@ -45,13 +45,12 @@ static void delete_objects(struct executor_gl *executor)
 		target_finish(&executor->pictures[i], gl);
 	for (int i = 0; i < MAX_LEVELS; i++)
 		target_finish(&executor->levels[i], gl);
-	gl->DeleteFramebuffers(1, &executor->both_framebuffer);
 	gl->DeleteFramebuffers(1, &executor->depth_framebuffer);
 	gl->DeleteFramebuffers(1, &executor->copy_framebuffer);
 	gl->DeleteRenderbuffers(1, &executor->depth);
 	gl->DeleteVertexArrays(1, &executor->no_attributes);
-	gl->DeleteVertexArrays(1, &executor->tile_array);
-	dynamic_finish(&executor->tile_vertices, gl);
+	tile_buffer_finish(&executor->level_tiles, gl);
+	gl_layers_finish(&executor->layers, gl);
 	warp_buffers_finish(&executor->buffers, gl);
 	stream_finish(&executor->stream, gl);
 	readback_finish(&executor->readback, gl);
@@ -115,7 +114,8 @@ static uint64_t count_bytes(const struct executor_gl *executor)
 		bytes += target_bytes(&executor->pictures[i]);
 	for (int i = 0; i < MAX_LEVELS; i++)
 		bytes += target_bytes(&executor->levels[i]);
-	bytes += executor->buffers.vertices.bytes + executor->buffers.indices.bytes + executor->tile_vertices.bytes;
+	bytes += executor->buffers.vertices.bytes + executor->buffers.indices.bytes;
+	bytes += executor->level_tiles.vertices.bytes + gl_layers_bytes(&executor->layers);
 	bytes += stream_bytes(&executor->stream) + readback_bytes(&executor->readback);
 	return bytes + analysis_bytes(&executor->analysis);
 }

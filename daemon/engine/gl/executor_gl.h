@@ -7,6 +7,7 @@
 
 #include "daemon/engine/gl/analysis.h"
 #include "daemon/engine/gl/context.h"
+#include "daemon/engine/gl/layers.h"
 #include "daemon/engine/gl/program.h"
 #include "daemon/engine/gl/readback.h"
 #include "daemon/engine/gl/stream.h"
@@ -31,18 +32,17 @@ struct executor_gl {
 	struct context *context;
 	struct program_cache programs;
 	struct timer timer;
-	struct target pictures[PICTURE_COUNT];
-	struct target levels[MAX_LEVELS]; /* levels[i] is level i + 1 of the pyramid */
+	struct target pictures[PICTURE_COUNT]; /* REAL and BETWEEN have none of their own */
+	struct target levels[MAX_LEVELS];      /* levels[i] is level i + 1 of the pyramid */
 	struct warp_buffers buffers;
 	struct stream stream;
 	struct readback readback;
 	struct analysis analysis;
 	uint8_t *row; /* of the UI */
 	size_t row_bytes;
-	GLuint tile_array; /* rectangles to fill */
-	struct dynamic tile_vertices;
+	struct tile_buffer level_tiles;
+	struct gl_layers layers;
 	struct shown shown;
-	GLuint both_framebuffer;         /* REAL and BETWEEN at once */
 	GLuint copy_framebuffer;         /* of the texture that a picture is copied to */
 	GLuint no_attributes;            /* a vertex array with nothing in it */
 	GLuint depth, depth_framebuffer; /* SHOWN with depth; 0 until the first fold */
@@ -59,13 +59,20 @@ static inline const struct gl *table_of(const struct engine *engine)
 	return &gl_of(engine)->context->gl;
 }
 
+/* Where a picture is drawn to; to be read it has to be asked for with gl_picture(). */
 static inline struct target *picture_of(const struct engine *engine, enum picture_id id)
 {
 	return &gl_of(engine)->pictures[id];
 }
 
-/* L for the program in use, which makes it of the pyramid's top level. */
-void low_bind(const struct engine *engine, const struct program *program);
+/*
+ * The picture of that name, ready to be read; of ORIGINAL, REAL and BETWEEN only the one asked for last is. 0, or a
+ * negative errno with a sentence.
+ */
+int gl_picture(struct engine *engine, enum picture_id id, const struct target **picture, struct error *error);
+
+/* L for the program in use, which makes it of that level of the pyramid. */
+void low_bind(const struct engine *engine, const struct program *program, uint32_t level);
 
 extern const struct pass gl_pass_analyse, gl_pass_upload, gl_pass_pyramid, gl_pass_compensate, gl_pass_put,
 	gl_pass_warp, gl_pass_ui, gl_pass_read, gl_pass_copy;

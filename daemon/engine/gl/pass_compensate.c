@@ -8,30 +8,98 @@
 
 #include "shaders/limits.h"
 
-static int make_targets(struct engine *engine, struct error *error)
+void gl_layers_forget(struct gl_layers *layers)
 {
-	struct executor_gl *executor = gl_of(engine);
+	layers->made = false;
+	layers->shown = PICTURE_ORIGINAL;
+}
+
+void gl_layers_finish(struct gl_layers *layers, const struct gl *gl)
+{
+	target_finish(&layers->kept, gl);
+	tile_buffer_finish(&layers->tiles, gl);
+	warp_buffers_finish(&layers->buffers, gl);
+}
+
+uint64_t gl_layers_bytes(const struct gl_layers *layers)
+{
+	return target_bytes(&layers->kept) + layers->tiles.vertices.bytes + layers->buffers.vertices.bytes +
+		   layers->buffers.indices.bytes;
+}
+
+/* The tiles in which the three differ. */
+static int copy_tiles(struct engine *engine, const struct target *from, const struct target *to, struct error *error)
+{
+	struct gl_layers *layers = &gl_of(engine)->layers;
 	const struct gl *gl = table_of(engine);
-	uint32_t width = engine->width, height = engine->height;
-	struct target *real = picture_of(engine, PICTURE_REAL), *between = picture_of(engine, PICTURE_BETWEEN);
-	/* Each by itself: one of them may have failed the last time. */
-	const bool resized =
-		real->width != width || real->height != height || between->width != width || between->height != height;
-	int result = target_resize(real, gl, width, height, error);
-	if (result == 0)
-		result = target_resize(between, gl, width, height, error);
-	if (result < 0 || (!resized && executor->both_framebuffer))
-		return result;
-	if (!executor->both_framebuffer)
-		gl->GenFramebuffers(1, &executor->both_framebuffer);
-	gl->BindFramebuffer(GL_FRAMEBUFFER, executor->both_framebuffer);
-	gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, real->texture, 0);
-	gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT1, GL_TEXTURE_2D, between->texture, 0);
-	gl->DrawBuffers(2, (const GLenum[]){GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1});
+	if (layers->variant & VARIANT_WEIGHT_ONE) {
+		target_copy(from, to, gl);
+		return 0;
+	}
+	const struct program *program = program_use(&gl_of(engine)->programs, gl, PROGRAM_COPY, 0, error);
+	if (!program)
+		return -EIO;
+	target_draw_to(to, gl);
+	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
+	gl->BindTexture(GL_TEXTURE_2D, from->texture);
+	gl->Uniform2f(program->size, (float)to->width, (float)to->height);
+	tile_buffer_draw(&layers->tiles, gl);
 	return 0;
 }
 
-static unsigned variant(const struct engine *engine)
+static void bind(const struct engine *engine, const struct program *program)
+{
+	const struct gl_layers *layers = &gl_of(engine)->layers;
+	const struct gl *gl = table_of(engine);
+	low_bind(engine, program, layers->level);
+	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
+	gl->BindTexture(GL_TEXTURE_2D, layers->kept.texture);
+	gl->Uniform2f(program->size, (float)layers->kept.width, (float)layers->kept.height);
+	gl->Uniform1f(program->shift, 0.0f);
+	gl->Uniform1f(program->last_phase, layers->last_phase);
+	gl->Uniform1f(program->count, layers->count);
+	gl->Uniform1f(program->boost, layers->boost);
+	gl->Uniform1f(program->gamma, layers->gamma);
+}
+
+/* REAL or BETWEEN. */
+static int draw(struct engine *engine, enum picture_id id, struct error *error)
+{
+	struct executor_gl *executor = gl_of(engine);
+	const struct gl *gl = table_of(engine);
+	const unsigned variant = executor->layers.variant | (id == PICTURE_REAL ? VARIANT_REAL : 0);
+	const struct program *program = program_use(&executor->programs, gl, PROGRAM_COMPENSATE, variant, error);
+	if (!program)
+		return -EIO;
+	target_draw_to(&executor->pictures[PICTURE_ORIGINAL], gl);
+	bind(engine, program);
+	if (variant & VARIANT_WEIGHT_ONE) {
+		gl->BindVertexArray(executor->no_attributes);
+		gl->DrawArrays(GL_TRIANGLES, 0, 6);
+	} else {
+		warp_buffers_draw(&executor->layers.buffers, gl, executor->layers.list);
+	}
+	return 0;
+}
+
+int gl_picture(struct engine *engine, enum picture_id id, const struct target **picture, struct error *error)
+{
+	struct executor_gl *executor = gl_of(engine);
+	struct gl_layers *layers = &executor->layers;
+	const bool one_of_three = id == PICTURE_ORIGINAL || id == PICTURE_REAL || id == PICTURE_BETWEEN;
+	*picture = &executor->pictures[one_of_three ? PICTURE_ORIGINAL : id];
+	if (id == PICTURE_REAL && !layers->real_differs)
+		id = PICTURE_ORIGINAL;
+	if (!one_of_three || !layers->made || layers->shown == id)
+		return 0;
+	const int result =
+		id == PICTURE_ORIGINAL ? copy_tiles(engine, &layers->kept, *picture, error) : draw(engine, id, error);
+	if (result == 0)
+		layers->shown = id;
+	return result;
+}
+
+static unsigned variant_of(const struct engine *engine)
 {
 	unsigned flags = engine->params.blur == ENGINE_BLUR_EVERYWHERE ? VARIANT_WEIGHT_ONE : 0;
 	if (engine->params.no_compensation)
@@ -39,48 +107,43 @@ static unsigned variant(const struct engine *engine)
 	return flags | (engine->params.curve == ENGINE_CURVE_GAMMA ? VARIANT_GAMMA : 0);
 }
 
-static void bind(const struct engine *engine, const struct program *program)
+static void take_settings(const struct engine *engine, struct gl_layers *layers)
 {
-	const struct gl *gl = table_of(engine);
-	low_bind(engine, program);
-	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
-	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, PICTURE_ORIGINAL)->texture);
-	gl->Uniform2f(program->size, (float)engine->width, (float)engine->height);
-	gl->Uniform1f(program->shift, 0.0f);
-	gl->Uniform1f(program->last_phase, (float)engine->last_phase);
-	gl->Uniform1f(program->count, (float)engine->n);
-	gl->Uniform1f(program->boost, (float)engine->boost);
-	gl->Uniform1f(program->gamma, engine->params.gamma);
+	layers->list = engine->mesh.doubtful;
+	layers->variant = variant_of(engine);
+	layers->real_differs = !engine->params.no_compensation;
+	layers->level = engine->params.blur_level;
+	layers->last_phase = (float)engine->last_phase;
+	layers->count = (float)engine->n;
+	layers->boost = (float)engine->boost;
+	layers->gamma = engine->params.gamma;
 }
 
+static int load(struct engine *engine, struct gl_layers *layers, struct error *error)
+{
+	const struct gl *gl = table_of(engine);
+	if (layers->variant & VARIANT_WEIGHT_ONE)
+		return 0;
+	int result = warp_buffers_update(&layers->buffers, gl, &engine->mesh, NULL, &engine->report.bytes_up, error);
+	return result == 0 ? tile_buffer_load(&layers->tiles, gl, &engine->mesh.low, error) : result;
+}
+
+/* The real frame, since that is what is shown first; in-betweens when one is. */
 static int run(struct engine *engine, struct error *error)
 {
-	struct executor_gl *executor = gl_of(engine);
-	const struct gl *gl = table_of(engine);
-	int result = make_targets(engine, error);
-	if (result < 0)
-		return result;
-	bool everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
-	if (!everywhere) {
-		result = warp_buffers_update(&executor->buffers, gl, &engine->mesh, NULL, &engine->report.bytes_up, error);
-		if (result < 0)
-			return result;
-		target_copy(picture_of(engine, PICTURE_ORIGINAL), picture_of(engine, PICTURE_REAL), gl);
-		target_copy(picture_of(engine, PICTURE_ORIGINAL), picture_of(engine, PICTURE_BETWEEN), gl);
-	}
-	const struct program *program = program_use(&executor->programs, gl, PROGRAM_COMPENSATE, variant(engine), error);
-	if (!program)
-		return -EIO;
-	bind(engine, program);
-	gl->BindFramebuffer(GL_FRAMEBUFFER, executor->both_framebuffer);
-	gl->Viewport(0, 0, (GLsizei)engine->width, (GLsizei)engine->height);
-	if (everywhere) {
-		gl->BindVertexArray(executor->no_attributes);
-		gl->DrawArrays(GL_TRIANGLES, 0, 6);
-	} else {
-		warp_buffers_draw(&executor->buffers, gl, engine->mesh.doubtful);
-	}
-	return 0;
+	struct gl_layers *layers = &gl_of(engine)->layers;
+	const struct target *picture;
+	int result = gl_picture(engine, PICTURE_ORIGINAL, &picture, error);
+	gl_layers_forget(layers);
+	take_settings(engine, layers);
+	if (result == 0)
+		result = target_resize(&layers->kept, table_of(engine), engine->width, engine->height, error);
+	if (result == 0)
+		result = load(engine, layers, error);
+	if (result == 0)
+		result = copy_tiles(engine, picture, &layers->kept, error);
+	layers->made = result == 0;
+	return result == 0 ? gl_picture(engine, PICTURE_REAL, &picture, error) : result;
 }
 
 const struct pass gl_pass_compensate = {.run = run};

@@ -9,7 +9,10 @@
 static int run(struct engine *engine, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
-	const struct target *picture = picture_of(engine, engine->job.picture);
+	const struct target *picture;
+	const int result = gl_picture(engine, engine->job.picture, &picture, error);
+	if (result < 0)
+		return result;
 	const GLint width = (GLint)picture->width, height = (GLint)picture->height;
 	GLuint *framebuffer = &gl_of(engine)->copy_framebuffer;
 	if (!*framebuffer)

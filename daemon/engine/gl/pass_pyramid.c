@@ -7,35 +7,8 @@
 
 #include "shaders/limits.h"
 
-static void make_array(struct executor_gl *executor, const struct gl *gl)
-{
-	gl->GenVertexArrays(1, &executor->tile_array);
-	gl->GenBuffers(1, &executor->tile_vertices.id);
-	gl->BindVertexArray(executor->tile_array);
-	gl->BindBuffer(GL_ARRAY_BUFFER, executor->tile_vertices.id);
-	gl->VertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, 0, NULL);
-	gl->EnableVertexAttribArray(ATTRIBUTE_POSITION);
-}
-
-/* The marked tiles as triangles, bound for drawing; how many corners they have. */
-static int load_tiles(struct engine *engine, const struct tiles *tiles, struct error *error)
-{
-	struct executor_gl *executor = gl_of(engine);
-	const struct gl *gl = table_of(engine);
-	if (!executor->tile_array)
-		make_array(executor, gl);
-	float *to =
-		dynamic_map(&executor->tile_vertices, gl, GL_ARRAY_BUFFER, tiles_most_numbers(tiles) * sizeof(*to), error);
-	if (!to)
-		return -ENOMEM;
-	const size_t numbers = tiles_write(tiles, to);
-	const int result = dynamic_unmap(gl, GL_ARRAY_BUFFER, error);
-	gl->BindVertexArray(executor->tile_array);
-	return result < 0 ? result : (int)(numbers / 2);
-}
-
 /* One picture from another by a program; the target's texels are 2^shift pixels of the original a side. */
-static int make(struct engine *engine, const struct target *from, struct target *to, uint32_t shift, int corners,
+static int make(struct engine *engine, const struct target *from, struct target *to, uint32_t shift,
 				struct error *error)
 {
 	const struct gl *gl = table_of(engine);
@@ -43,21 +16,24 @@ static int make(struct engine *engine, const struct target *from, struct target 
 	if (!program)
 		return -EIO;
 	target_draw_to(to, gl);
+	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
 	gl->BindTexture(GL_TEXTURE_2D, from->texture);
 	gl->Uniform2f(program->size, (float)(to->width << shift), (float)(to->height << shift));
-	gl->DrawArrays(GL_TRIANGLES, 0, corners);
+	tile_buffer_draw(&gl_of(engine)->level_tiles, gl);
 	return 0;
 }
 
 static int make_levels(struct engine *engine, struct error *error)
 {
-	const struct target *below = picture_of(engine, PICTURE_ORIGINAL);
-	int corners = load_tiles(engine, &engine->mesh.levels, error), result = corners;
-	for (uint32_t i = 0; i < engine->params.blur_level && i < MAX_LEVELS && result >= 0; i++) {
+	const struct target *below;
+	int result = gl_picture(engine, PICTURE_ORIGINAL, &below, error);
+	if (result == 0)
+		result = tile_buffer_load(&gl_of(engine)->level_tiles, table_of(engine), &engine->mesh.levels, error);
+	for (uint32_t i = 0; i < engine->params.blur_level && i < MAX_LEVELS && result == 0; i++) {
 		struct target *level = &gl_of(engine)->levels[i];
 		result = target_resize(level, table_of(engine), (below->width + 1) / 2, (below->height + 1) / 2, error);
 		if (result == 0)
-			result = make(engine, below, level, i + 1, corners, error);
+			result = make(engine, below, level, i + 1, error);
 		below = level;
 	}
 	return result;
@@ -67,18 +43,17 @@ static int run(struct engine *engine, struct error *error)
 {
 	if (engine->levels_everywhere)
 		tiles_mark_all(&engine->mesh.levels);
-	table_of(engine)->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
 	int result = make_levels(engine, error);
 	engine->levels_made = engine->levels_everywhere ? LEVELS_ALL : LEVELS_MARKED;
 	return result;
 }
 
-void low_bind(const struct engine *engine, const struct program *program)
+void low_bind(const struct engine *engine, const struct program *program, uint32_t level)
 {
 	const struct gl *gl = table_of(engine);
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_LOW);
-	gl->BindTexture(GL_TEXTURE_2D, gl_of(engine)->levels[engine->params.blur_level - 1].texture);
-	gl->Uniform1f(program->level_scale, 1.0f / (float)(1u << engine->params.blur_level));
+	gl->BindTexture(GL_TEXTURE_2D, gl_of(engine)->levels[level - 1].texture);
+	gl->Uniform1f(program->level_scale, 1.0f / (float)(1u << level));
 }
 
 const struct pass gl_pass_pyramid = {.run = run};

@@ -18,11 +18,14 @@ static int run(struct engine *engine, struct error *error)
 	const struct gl *gl = table_of(engine);
 	struct target *shown = picture_of(engine, PICTURE_SHOWN);
 	if (engine->job.picture != PICTURE_SHOWN) {
+		const struct target *picture;
 		gl_of(engine)->shown.holds = false;
 		int result = target_resize(shown, gl, engine->width, engine->height, error);
+		if (result == 0)
+			result = gl_picture(engine, engine->job.picture, &picture, error);
 		if (result < 0)
 			return result;
-		target_copy(picture_of(engine, engine->job.picture), shown, gl);
+		target_copy(picture, shown, gl);
 	}
 	if (!program_use(&gl_of(engine)->programs, gl, PROGRAM_UI, 0, error))
 		return -EIO;

@@ -81,8 +81,12 @@ static int upload(struct engine *engine, enum picture_id id, const struct layer 
 
 static int run(struct engine *engine, struct error *error)
 {
+	const struct target *whole;
 	int color, ui;
 	int result = planes_prepare(engine, &color, &ui, error);
+	if (result == 0 && engine->damage.known)
+		result = gl_picture(engine, PICTURE_ORIGINAL, &whole, error);
+	gl_layers_forget(&gl_of(engine)->layers);
 	if (result == 0 && !planes_changed(engine, 0, engine->height)) {
 		report_leave_out(&engine->report, "upload", "unchanged");
 		return 0;

@@ -43,15 +43,20 @@ static bool use(struct engine *engine, unsigned variant, struct error *error)
 	gl->Uniform1f(program->shift, (float)engine->job.phase);
 	gl->Uniform1f(program->last_phase, 0.0f);
 	if (variant & VARIANT_TEAR)
-		low_bind(engine, program);
+		low_bind(engine, program, engine->params.blur_level);
 	return true;
 }
 
-static void bind_picture(const struct engine *engine)
+static int bind_picture(struct engine *engine, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
+	const struct target *picture;
+	const int result = gl_picture(engine, engine->job.picture, &picture, error);
+	if (result < 0)
+		return result;
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
-	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, engine->job.picture)->texture);
+	gl->BindTexture(GL_TEXTURE_2D, picture->texture);
+	return 0;
 }
 
 static int draw_folded(struct engine *engine, struct error *error)
@@ -120,9 +125,10 @@ static int run(struct engine *engine, struct error *error)
 		result = make_depth(engine, error);
 	if (result == 0)
 		result = warp_buffers_update(&executor->buffers, gl, &engine->mesh, kept, &engine->report.bytes_up, error);
+	if (result == 0)
+		result = bind_picture(engine, error);
 	if (result < 0)
 		return result;
-	bind_picture(engine);
 	gl->Enable(GL_CULL_FACE);
 	result = draw(engine, error);
 	gl->Disable(GL_CULL_FACE);

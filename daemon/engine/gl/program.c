@@ -14,16 +14,14 @@ static const struct {
 } sources[PROGRAM_KIND_COUNT] = {
 	[PROGRAM_PYRAMID] = {"pyramid", shader_tiles_vert, shader_pyramid_frag},
 	[PROGRAM_COMPENSATE] = {"compensate", shader_grid_vert, shader_compensate_frag},
+	[PROGRAM_COPY] = {"copy", shader_tiles_vert, shader_copy_frag},
 	[PROGRAM_WARP] = {"warp", shader_grid_vert, shader_warp_frag},
 	[PROGRAM_UI] = {"ui", shader_rectangle_vert, shader_ui_frag},
 	[PROGRAM_ANALYSE] = {"analyse", .compute = shader_analyse_comp},
 };
 
 static const char *const variant_defines[] = {
-	"#define CURVE_GAMMA\n",
-	"#define WEIGHT_ONE\n",
-	"#define NO_COMPENSATION\n",
-	"#define TEAR\n",
+	"#define CURVE_GAMMA\n", "#define WEIGHT_ONE\n", "#define NO_COMPENSATION\n", "#define TEAR\n", "#define REAL\n",
 };
 
 static const char *header(const struct gl *gl)

@@ -11,6 +11,7 @@
 enum program_kind {
 	PROGRAM_PYRAMID = 0,
 	PROGRAM_COMPENSATE,
+	PROGRAM_COPY,
 	PROGRAM_WARP,
 	PROGRAM_UI,
 	PROGRAM_ANALYSE,
@@ -22,7 +23,8 @@ enum program_kind {
 #define VARIANT_WEIGHT_ONE 2u      /* compensate: w = 1, without geometry */
 #define VARIANT_NO_COMPENSATION 4u /* compensate: the mix alone */
 #define VARIANT_TEAR 8u            /* warp: fades to L where it is torn */
-#define VARIANT_COUNT 16u
+#define VARIANT_REAL 16u           /* compensate: E instead of B */
+#define VARIANT_COUNT 32u
 
 #define PROGRAM_UNIFORMS(X) X(size) X(shift) X(last_phase) X(level_scale) X(count) X(boost) X(gamma)
 
