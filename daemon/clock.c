@@ -47,3 +47,31 @@ void clock_init_virtual(struct clock_virtual *clock, uint64_t start_ns)
 	clock->clock.wait_until = virtual_wait_until;
 	atomic_init(&clock->time_ns, start_ns);
 }
+
+static uint64_t spinning_now(struct clock *clock)
+{
+	return clock_now(((struct clock_spinning *)clock)->inner);
+}
+
+static void spinning_wait_until(struct clock *clock, uint64_t time_ns)
+{
+	struct clock_spinning *self = (struct clock_spinning *)clock;
+	const uint64_t spin_ns = atomic_load_explicit(&self->spin_ns, memory_order_relaxed);
+	if (time_ns > spin_ns)
+		clock_wait_until(self->inner, time_ns - spin_ns);
+	while (clock_now(self->inner) < time_ns)
+		;
+}
+
+void clock_init_spinning(struct clock_spinning *clock, struct clock *inner, uint64_t spin_ns)
+{
+	clock->clock.now = spinning_now;
+	clock->clock.wait_until = spinning_wait_until;
+	clock->inner = inner;
+	atomic_init(&clock->spin_ns, spin_ns);
+}
+
+void clock_set_spin(struct clock_spinning *clock, uint64_t spin_ns)
+{
+	atomic_store_explicit(&clock->spin_ns, spin_ns, memory_order_relaxed);
+}

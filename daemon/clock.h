@@ -40,4 +40,18 @@ struct clock_virtual {
 
 void clock_init_virtual(struct clock_virtual *clock, uint64_t start_ns);
 
+/*
+ * Another one, which goes on by itself unless spin_ns is 0, in whose waits the last spin_ns are spent looking at it: a
+ * thread that sleeps is woken some time too late. That costs a processor for so long each time.
+ */
+struct clock_spinning {
+	struct clock clock;
+	struct clock *inner; /* lives as long */
+	_Atomic uint64_t spin_ns;
+};
+
+void clock_init_spinning(struct clock_spinning *clock, struct clock *inner, uint64_t spin_ns);
+/* Any thread: from the next wait on. */
+void clock_set_spin(struct clock_spinning *clock, uint64_t spin_ns);
+
 #endif

@@ -27,6 +27,7 @@ struct slot {
 
 struct display {
 	struct display_params params;
+	struct clock_spinning clock; /* the presenters' */
 	struct slot slots[2];
 	struct slot *now, *next; /* in use, NULL none; better than it, to be used as soon as that is gone, mostly NULL */
 	struct loop_source *presenter_source, *wake_source, *retry_source;
@@ -107,7 +108,7 @@ static struct presenter_params params_for(struct display *display, struct slot *
 {
 	const struct settings *settings = display->params.settings;
 	return (struct presenter_params){
-		.clock = display->params.clock,
+		.clock = &display->clock.clock,
 		.log = display->params.log,
 		.refresh_numerator = settings->refresh_numerator,
 		.refresh_denominator = settings->refresh_denominator,
@@ -298,6 +299,7 @@ struct display *display_create(const struct display_params *params, struct error
 		return NULL;
 	}
 	display->params = *params;
+	clock_init_spinning(&display->clock, params->clock, (uint64_t)params->settings->spin_us * 1000);
 	display->wake_fd = display->retry_fd = -1;
 	pthread_mutex_init(&display->lock, NULL);
 	if (start(display, error) < 0)

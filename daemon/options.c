@@ -96,6 +96,9 @@ static const struct option_row rows[] = {
 		 "lost, the list is tried again."),
 	RATE(refresh, "refresh", OPTION_OUTPUT, "120", 1, 1000,
 		 "Display rate as 120, 119.88 or 120000/1001; a presenter with a display of its own may have another."),
+	NUMBER(spin_us, "spin-us", OPTION_OUTPUT, "0", 0, 500, "us",
+		   "headless, and glfw: look at the clock for so long before each vblank instead of sleeping up to it, so that "
+		   "flips are nearer to their time; costs as much of a core. 100 is a good value where it matters."),
 	CHOICE(on_client_exit, "on-client-exit", OPTION_OUTPUT, "keep", exit_choices,
 		   "When the client that is shown closes its stream, ends or is killed: its last picture stays, or black."),
 	TEXT(tee, "tee", OPTION_OUTPUT, "",

@@ -41,6 +41,7 @@ struct settings {
 	char present[128];          /* comma-separated list of presenters, tried in turn */
 	uint64_t refresh_numerator; /* --refresh 120, 119.88, 120000/1001 */
 	uint64_t refresh_denominator;
+	uint32_t spin_us;        /* of a presenter's waits, the last; 0: none */
 	uint32_t on_client_exit; /* enum on_client_exit */
 	char monitor[64];        /* "": the primary one */
 	bool fullscreen;

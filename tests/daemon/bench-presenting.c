@@ -5,7 +5,9 @@
  * What presenting costs, headless at 120 Hz, method pursuit, as lines of `name value unit`:
  *   cpu       CPU time of the daemon, all its threads, as a share of a core: with nothing to do, with a client that has
  *             stopped, and with a still picture sent 60 times a second, declared and found by looking
- *   overhead  from a frame's submission to its picture, less the time that the engine worked meanwhile
+ *   wake      from a vblank's time to the presenting thread's flip, in a still picture, by --spin-us; and what its
+ * thread needs for that of a core overhead  from a frame's submission to its picture, less the time that the engine
+ * worked meanwhile
  *
  *   bench-presenting PURSUITD [SECONDS]
  */
@@ -33,8 +35,19 @@ static unsigned seconds = 5;
 
 /* ---- the daemon ---- */
 
-/* ns that all threads of the daemon have run. */
-static uint64_t daemon_ran_ns(void)
+static bool is_thread(const char *task, const char *name)
+{
+	char path[400], text[32] = "";
+	snprintf(path, sizeof(path), "/proc/%d/task/%s/comm", (int)fixture.pid, task);
+	FILE *file = fopen(path, "r");
+	const bool read = file && fgets(text, sizeof(text), file);
+	if (file)
+		fclose(file);
+	return read && strncmp(text, name, strlen(name)) == 0;
+}
+
+/* ns that threads of this name have run; NULL: all. */
+static uint64_t thread_ran_ns(const char *name)
 {
 	char path[64], file_name[400];
 	uint64_t sum = 0;
@@ -42,6 +55,8 @@ static uint64_t daemon_ran_ns(void)
 	DIR *folder = opendir(path);
 	for (const struct dirent *entry; folder && (entry = readdir(folder)) != NULL;) {
 		uint64_t ran = 0;
+		if (name && !is_thread(entry->d_name, name))
+			continue;
 		snprintf(file_name, sizeof(file_name), "%s/%s/schedstat", path, entry->d_name);
 		FILE *file = fopen(file_name, "r");
 		if (file && fscanf(file, "%" SCNu64, &ran) == 1)
@@ -137,9 +152,9 @@ static void print_cpu(const char *name, const struct size *size, double share)
 
 static double measure_waiting(void)
 {
-	const uint64_t before = daemon_ran_ns();
+	const uint64_t before = thread_ran_ns(NULL);
 	sleep_ms(seconds * 1000);
-	return (double)(daemon_ran_ns() - before) / (seconds * 1e9);
+	return (double)(thread_ran_ns(NULL) - before) / (seconds * 1e9);
 }
 
 static void measure_cpu(const struct size *size, enum content content)
@@ -150,9 +165,9 @@ static void measure_cpu(const struct size *size, enum content content)
 		sleep_ms(1000);
 		print_cpu(content_names[content], size, measure_waiting());
 	} else {
-		const uint64_t before = daemon_ran_ns();
+		const uint64_t before = thread_ran_ns(NULL);
 		play(stream, content, seconds);
-		print_cpu(content_names[content], size, (double)(daemon_ran_ns() - before) / (seconds * 1e9));
+		print_cpu(content_names[content], size, (double)(thread_ran_ns(NULL) - before) / (seconds * 1e9));
 	}
 	pursuit_close(&stream);
 	sleep_ms(200);
@@ -173,12 +188,76 @@ static void measure_overhead(const struct size *size)
 	fixture_stop(&fixture, SIGTERM);
 }
 
+static int compare(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+/* From vblank to flip, in us: columns of the latency log by their names. */
+static size_t read_wakes(const char *path, double *wakes, size_t most)
+{
+	char line[2048];
+	size_t count = 0;
+	int target = -1, flip = -1;
+	FILE *file = fopen(path, "r");
+	while (file && fgets(line, sizeof(line), file) && count < most) {
+		uint64_t target_ns = 0, flip_ns = 0;
+		const bool names = strstr(line, "target_ns") && strstr(line, "flip_ns");
+		int column = 0;
+		char *rest = line;
+		for (const char *word; (word = strsep(&rest, ",\n")) != NULL; column++) {
+			if (names && strcmp(word, "target_ns") == 0)
+				target = column;
+			if (names && strcmp(word, "flip_ns") == 0)
+				flip = column;
+			if (!names && column == target)
+				target_ns = strtoull(word, NULL, 10);
+			if (!names && column == flip)
+				flip_ns = strtoull(word, NULL, 10);
+		}
+		if (target_ns && flip_ns)
+			wakes[count++] = ((double)flip_ns - (double)target_ns) / 1e3;
+	}
+	if (file)
+		fclose(file);
+	return count;
+}
+
+static void measure_wakes(const char *spin_us)
+{
+	static double wakes[100000];
+	const struct size size = {640, 360};
+	char path[128];
+	snprintf(path, sizeof(path), "%s/wakes.csv", fixture.folder);
+	const char *const arguments[] = {"--spin-us", spin_us, "--latency-log", path, NULL};
+	unlink(path);
+	fixture_start(&fixture, arguments);
+	struct pursuit_stream *stream = open_stream(&size);
+	play(stream, DECLARED, 1.0);
+	const uint64_t before = thread_ran_ns("pursuit-flip");
+	play(stream, DECLARED, 2.0 * seconds);
+	const double share = (double)(thread_ran_ns("pursuit-flip") - before) / (2e9 * seconds);
+	pursuit_close(&stream);
+	fixture_stop(&fixture, SIGTERM);
+	const size_t count = read_wakes(path, wakes, sizeof(wakes) / sizeof(wakes[0]));
+	qsort(wakes, count, sizeof(wakes[0]), compare);
+	if (count > 0)
+		printf("presenting.wake.spin_%s.median %.1f us\npresenting.wake.spin_%s.p99 %.1f us\n", spin_us,
+			   wakes[count / 2], spin_us, wakes[count - 1 - count / 100]);
+	printf("presenting.wake.spin_%s.cpu %.2f %% of a core\n", spin_us, 100.0 * share);
+	fflush(stdout);
+}
+
 int main(int argc, char **argv)
 {
+	static const char *const spins[] = {"0", "50", "100", "200", "400"};
 	const char *const arguments[] = {"--method=pursuit", NULL};
 	if (argc > 2)
 		seconds = (unsigned)atoi(argv[2]);
 	fixture_init(&fixture, argv[1]);
+	for (size_t i = 0; i < sizeof(spins) / sizeof(spins[0]); i++)
+		measure_wakes(spins[i]);
 	fixture_start(&fixture, arguments);
 	sleep_ms(1000);
 	print_cpu("waiting", NULL, measure_waiting());
