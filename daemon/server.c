@@ -147,7 +147,8 @@ static void hang_up_one(struct server *server)
 		close(fd);
 	loop_add_work(server->params.loop, fd >= 0);
 	server->reserve_fd = open("/dev/null", O_RDONLY | O_CLOEXEC);
-	log_error(server->params.log, "out of file descriptors: a client was turned away");
+	if (log_limit_allows(&server->log_limit, clock_now(server->params.clock)))
+		log_error(server->params.log, "out of file descriptors: a client was turned away");
 }
 
 static void on_accept(void *data, uint32_t events)

@@ -8,6 +8,7 @@
 #include <grp.h>
 #include <pthread.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -221,6 +222,44 @@ static void test_message_rate(void)
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }
 
+/* One who keeps connecting to a daemon without descriptors is hung up on and does not fill the log. */
+static void test_no_descriptors(void)
+{
+	enum { HELD = 20, TRIES = 300 };
+	static const char said[] = "out of file descriptors: a client was turned away";
+	static struct raw_reply reply;
+	char line[512];
+	int held[HELD], lines = 0;
+	fixture_start(&fixture, NULL);
+	struct rlimit before;
+	CHECK_INT(prlimit(fixture.pid, RLIMIT_NOFILE, NULL, &before), 0);
+	const struct rlimit few = {(rlim_t)fixture_fewest_fds(&fixture) + 4, before.rlim_max};
+	CHECK_INT(prlimit(fixture.pid, RLIMIT_NOFILE, &few, NULL), 0);
+	const uint64_t start_ns = now_ns();
+	for (int i = 0; i < HELD; i++)
+		held[i] = raw_connect(fixture.socket);
+	for (int i = 0; i < TRIES; i++) {
+		const int fd = raw_connect(fixture.socket);
+		CHECK(raw_is_gone(fd));
+		close(fd);
+	}
+	const uint64_t seconds = (now_ns() - start_ns) / UINT64_C(1000000000) + 2;
+	CHECK_INT(prlimit(fixture.pid, RLIMIT_NOFILE, &before, NULL), 0);
+	for (int i = 0; i < HELD; i++)
+		close(held[i]);
+	const int fd = raw_greet(fixture.socket);
+	CHECK_INT(raw_control(fd, "ping", -1, &reply), 0);
+	close(fd);
+	FILE *log = fopen(fixture.log, "re");
+	while (log && fgets(line, sizeof(line), log))
+		lines += strstr(line, said) != NULL;
+	if (log)
+		fclose(log);
+	CHECK(lines > 0);
+	CHECK(lines <= (int)(4 * seconds));
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
 /* ---- seccomp ---- */
 
 static void *do_nothing(void *data)
@@ -314,6 +353,7 @@ int main(int argc, char **argv)
 	RUN(test_unknown_names);
 	RUN(test_streams_and_bytes);
 	RUN(test_message_rate);
+	RUN(test_no_descriptors);
 	RUN(test_filter);
 	RUN(test_daemon_behind_filter);
 	fixture_finish(&fixture);
