@@ -25,6 +25,7 @@ struct watchdog {
 	struct loop_source *source;
 	double step_s; /* between looks */
 	uint64_t beats, rounds, work;
+	uint64_t steps, cpu_ns, looks_in_step;
 	bool stuck;
 };
 
@@ -79,6 +80,26 @@ static bool spins(struct watchdog *watchdog, uint64_t looks)
 	return gone - done > WATCHDOG_ROUNDS * watchdog->step_s * (double)looks;
 }
 
+static uint64_t cpu_time_ns(clockid_t clock)
+{
+	struct timespec time = {0, 0};
+	clock_gettime(clock, &time);
+	return (uint64_t)time.tv_sec * UINT64_C(1000000000) + (uint64_t)time.tv_nsec;
+}
+
+/* Since the last look: has it been in one step, at which it works, or others for it? */
+static bool works(struct watchdog *watchdog, uint64_t looks)
+{
+	const uint64_t steps = output_rounds(watchdog->output);
+	const uint64_t cpu_ns = cpu_time_ns(CLOCK_PROCESS_CPUTIME_ID) - cpu_time_ns(CLOCK_THREAD_CPUTIME_ID);
+	const double used_s = (double)(int64_t)(cpu_ns - watchdog->cpu_ns) * 1e-9; /* the clocks are not read at once */
+	watchdog->looks_in_step = steps == watchdog->steps ? watchdog->looks_in_step + looks : 0;
+	watchdog->steps = steps;
+	watchdog->cpu_ns = cpu_ns;
+	return watchdog->looks_in_step > 0 && watchdog->looks_in_step <= WATCHDOG_LONGEST * LOOKS &&
+		   used_s > WATCHDOG_SHARE * watchdog->step_s * (double)looks;
+}
+
 static void on_timer(void *data, uint32_t events)
 {
 	struct watchdog *watchdog = data;
@@ -87,7 +108,8 @@ static void on_timer(void *data, uint32_t events)
 	if (read(watchdog->timer_fd, &looks, sizeof(looks)) < 0)
 		return;
 	const uint64_t beats = output_beats(watchdog->output);
-	const bool stands = beats == watchdog->beats, spinning = spins(watchdog, looks), stuck = stands || spinning;
+	const bool working = works(watchdog, looks), spinning = spins(watchdog, looks);
+	const bool stands = beats == watchdog->beats && !working, stuck = stands || spinning;
 	if (!stuck)
 		notify_send(watchdog->log, "WATCHDOG=1");
 	else if (!watchdog->stuck)
@@ -134,6 +156,7 @@ int watchdog_create(struct watchdog **watchdog, struct loop *loop, const struct 
 							  .timer_fd = -1,
 							  .step_s = (double)interval_us / LOOKS * 1e-6,
 							  .beats = UINT64_MAX,
+							  .steps = UINT64_MAX,
 							  .rounds = loop_get_rounds(loop),
 							  .work = loop_get_work(loop)};
 	int result = start_timer(self, interval_us);

@@ -12,7 +12,10 @@
  * stuck one does not, one whose presenter reports no vblanks does not count
  * (output_beats()), and the service is restarted. So it is if main does not come
  * to look, or has gone round its own loop more than WATCHDOG_ROUNDS times a
- * second for nothing.
+ * second for nothing. One step may last, on slow software GL with a huge picture
+ * or while shaders are compiled: as long as threads beside main work meanwhile
+ * (WATCHDOG_SHARE) it is no reason, but for WATCHDOG_LONGEST intervals at most,
+ * since a thread may work for ever too.
  *
  * On main.
  */
@@ -32,6 +35,9 @@ void notify_stopping(const struct log *log);
 
 /* Rounds of main's loop a second beyond what there was to do (loop_get_work()); a mouse makes up to 8,000. */
 #define WATCHDOG_ROUNDS 20000u
+/* Of a CPU, at least, that a step that goes on uses; it may have to share one with many. */
+#define WATCHDOG_SHARE 0.05
+#define WATCHDOG_LONGEST 6u
 
 struct watchdog;
 

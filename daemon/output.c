@@ -185,6 +185,11 @@ uint64_t output_beats(const struct output *output)
 	return atomic_load_explicit(&output->beats, memory_order_relaxed);
 }
 
+uint64_t output_rounds(const struct output *output)
+{
+	return atomic_load_explicit(&output->rounds, memory_order_relaxed);
+}
+
 void output_wake(struct output *output)
 {
 	pthread_mutex_lock(&output->lock);

@@ -90,6 +90,8 @@ void output_remove_stream(struct output *output, struct stream *stream);
  * the presenter reports no vblanks though it should (render_is_stuck()).
  */
 uint64_t output_beats(const struct output *output);
+/* How often it has gone round, well or not. Beside output_wake() it stands only in one long step. */
+uint64_t output_rounds(const struct output *output);
 
 /* Shows the newest stream of this client from the next vblank that it has a frame for. False: it has none. */
 bool output_focus(struct output *output, uint64_t client_id);

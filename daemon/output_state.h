@@ -22,7 +22,7 @@ struct output {
 	pthread_t thread;
 	int event_fd;
 
-	_Atomic uint64_t beats;
+	_Atomic uint64_t beats, rounds;
 	pthread_mutex_t lock; /* the mailbox */
 	pthread_cond_t wake;
 	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed;

@@ -208,6 +208,7 @@ void *output_run(void *data)
 	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
 	if (start(output) == 0) {
 		while (read_mailbox(output)) {
+			atomic_fetch_add_explicit(&output->rounds, 1, memory_order_relaxed);
 			if (!render_is_stuck(&output->render))
 				atomic_fetch_add_explicit(&output->beats, 1, memory_order_relaxed);
 			const uint64_t next_ns = render_step(&output->render);

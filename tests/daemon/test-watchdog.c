@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* The watchdog against a main loop that works, idles, or spins; the presentation loop is this test's, and well. */
+/* The watchdog against loops that work, idle, spin, or are in one long step; the presentation loop is this test's. */
 
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -14,14 +16,21 @@
 
 #define LOOK_MS 50 /* a third of the interval */
 
-static uint64_t beats;
+static uint64_t beats, rounds;
+static bool beating = true, going = true;
 static struct loop *loop;
 static int manager = -1;
 
 uint64_t output_beats(const struct output *output)
 {
 	(void)output;
-	return ++beats;
+	return beats += beating;
+}
+
+uint64_t output_rounds(const struct output *output)
+{
+	(void)output;
+	return rounds += going;
 }
 
 void output_wake(struct output *output)
@@ -104,6 +113,53 @@ static void test_main_loop(void)
 	close(fd);
 }
 
+static void *burn(void *data)
+{
+	atomic_bool *stop = data;
+	while (!atomic_load(stop))
+		continue;
+	return NULL;
+}
+
+/* So many looks, of which the first may count what was before. */
+static bool is_fed_within(int looks)
+{
+	run_for(LOOK_MS * 3 / 2);
+	was_fed();
+	run_for((unsigned)looks * LOOK_MS);
+	return was_fed();
+}
+
+/* The presentation loop stands; `moves`: but goes round, with a presenter that shows nothing. */
+static bool is_fed_without_beat(bool moves)
+{
+	beating = true;
+	is_fed();
+	beating = false;
+	going = moves;
+	const bool fed = is_fed_within(6);
+	beating = going = true;
+	return fed;
+}
+
+static void test_long_step(void)
+{
+	atomic_bool stop = false;
+	pthread_t worker;
+	CHECK(!is_fed_without_beat(false));
+	CHECK(!is_fed_without_beat(true));
+	pthread_create(&worker, NULL, burn, &stop);
+	CHECK(is_fed_without_beat(false));
+	CHECK(!is_fed_without_beat(true));
+	beating = going = false; /* for ever */
+	run_for(LOOK_MS * 3 * (WATCHDOG_LONGEST + 1));
+	CHECK(!is_fed_within(6));
+	beating = going = true;
+	CHECK(is_fed());
+	atomic_store(&stop, true);
+	pthread_join(worker, NULL);
+}
+
 int main(void)
 {
 	struct sockaddr_un address = {.sun_family = AF_UNIX};
@@ -123,6 +179,7 @@ int main(void)
 	CHECK_INT(watchdog_create(&watchdog, loop, &log, NULL, &error), 0);
 	CHECK(watchdog != NULL);
 	RUN(test_main_loop);
+	RUN(test_long_step);
 	watchdog_destroy(&watchdog);
 	loop_destroy(&loop);
 	close(manager);

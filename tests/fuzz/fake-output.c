@@ -136,6 +136,11 @@ uint64_t output_beats(const struct output *output)
 	return 0;
 }
 
+uint64_t output_rounds(const struct output *output)
+{
+	return 0;
+}
+
 int output_event_fd(const struct output *output)
 {
 	return output->event_fd;
