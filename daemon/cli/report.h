@@ -55,6 +55,24 @@ struct report_shown {
 	bool real;
 };
 
+/*
+ * How a picture of the viewer is stored: another one that is like it, and how far it is above and below that. Never in
+ * a circle: an earlier strip, or an earlier picture of the same one.
+ */
+struct report_base {
+	int32_t strip;       /* -1: black; 0: the truth */
+	uint32_t picture;    /* of that strip */
+	int32_t differences; /* where in the file of its own strip; -1: it is the same picture */
+};
+
+/* The pictures of the truth, or of a method, one below the other. */
+struct report_strip {
+	const struct report_variant *variant; /* NULL: the truth */
+	uint8_t *pictures;                    /* packed BGRA8; owned, until frames_end() */
+	struct report_base bases[REPORT_SHOWN];
+	uint32_t differing; /* pictures whose differences are in the file; 0: there is no file */
+};
+
 /* Pictures of a work that are kept for the page. */
 struct report_gallery {
 	const struct report_work *work;
@@ -65,6 +83,8 @@ struct report_gallery {
 	char contact[REPORT_NAME]; /* file of the contact sheet in DIR/pictures, "": none */
 	struct report_shown shown[REPORT_SHOWN];
 	uint32_t shown_first, shown_count; /* of the first clip; 0: none */
+	struct report_strip *strips;       /* the truth first; owned */
+	uint32_t strip_count;
 };
 
 #define REPORT_COST_POINTS 12u

@@ -10,8 +10,8 @@
 
 #include "contact.h"
 
-#define PART_WIDTH 200u
-#define PART_HEIGHT 150u
+#define PART_WIDTH 160u
+#define PART_HEIGHT 120u
 #define SHEET_WIDTH 160u
 #define SHEET_HEIGHT 90u
 #define SEARCH_STEP 10u

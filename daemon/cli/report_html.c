@@ -70,6 +70,47 @@ bool html_image(FILE *out, const char *path, const char *type, const char *descr
 	return true;
 }
 
+/* What a data: address in an attribute cannot hold as it is; a browser would drop line ends. */
+static void put_svg_byte(FILE *out, int byte)
+{
+	switch (byte) {
+	case '%':
+		fputs("%25", out);
+		break;
+	case '#':
+		fputs("%23", out);
+		break;
+	case '"':
+		fputs("%22", out);
+		break;
+	case '&':
+		fputs("&amp;", out);
+		break;
+	case '\n':
+	case '\r':
+	case '\t':
+		fputc(' ', out);
+		break;
+	default:
+		fputc(byte, out);
+	}
+}
+
+bool html_svg(FILE *out, const char *path, const char *description)
+{
+	FILE *in = fopen(path, "re");
+	if (!in)
+		return false;
+	fputs("<img decoding=\"async\" src=\"data:image/svg+xml,", out);
+	for (int byte; (byte = fgetc(in)) != EOF;)
+		put_svg_byte(out, byte);
+	fclose(in);
+	fputs("\" alt=\"", out);
+	html_text(out, description);
+	fputs("\">", out);
+	return true;
+}
+
 void html_json_text(FILE *out, const char *text)
 {
 	fputc('"', out);

@@ -14,6 +14,9 @@ void html_text(FILE *out, const char *text);
 /* <img> with the file's bytes in it; false, and nothing written, if there is no such file. */
 bool html_image(FILE *out, const char *path, const char *type, const char *description, const char *attributes);
 
+/* The same of an SVG file, as text, which takes less than base64. */
+bool html_svg(FILE *out, const char *path, const char *description);
+
 /* `before`, then the file's bytes as a data: address; false, and nothing written, if there is no such file. */
 bool html_data(FILE *out, const char *path, const char *type, const char *before);
 

@@ -29,7 +29,7 @@ static void put_plot(const struct report *report, FILE *out, const char *name, c
 {
 	char path[4200];
 	snprintf(path, sizeof(path), "%s/plots/%s.svg", report->options.out, name);
-	html_image(out, path, "image/svg+xml", description, "");
+	html_svg(out, path, description);
 }
 
 /* ---- the beginning ---- */
@@ -145,7 +145,8 @@ static void put_seen(const struct report *report, FILE *out, const uint8_t *seen
 		fprintf(stderr, "pursuit report: %s\n", error.text);
 		return;
 	}
-	snprintf(attributes, sizeof(attributes), "id=\"%s\" class=\"pixels\" width=\"%u\"", id, 2 * crop->width);
+	snprintf(attributes, sizeof(attributes), "id=\"%s\" class=\"pixels\" decoding=\"async\" width=\"%u\"", id,
+			 2 * crop->width);
 	fputs("<figure>", out);
 	html_image(out, path, "image/png", caption, attributes);
 	fputs("<figcaption>", out);
@@ -158,7 +159,7 @@ static void put_camera(const struct report *report, FILE *out, uint32_t index)
 	const struct report_gallery *gallery = &report->galleries[index];
 	const struct report_work *work = gallery->work;
 	char name[4 * REPORT_NAME], caption[160], seen[REPORT_NAME], id[2 * REPORT_NAME];
-	if (!gallery->truth || work->n != report->works[0].n)
+	if (!gallery->truth || work->n != report->works[0].n || viewer_is_full(out))
 		return;
 	fprintf(out,
 			"<p>Through the pursuit camera, at %.2f s; motion here is %.0f pixels a second on average.</p>\n<div>\n",

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "report.h"
+#include "report_frames.h"
 
 #define VERB "report"
 
@@ -259,8 +260,11 @@ void report_finish(struct report *report)
 		engine_destroy(&report->variants[i].engine);
 	for (uint32_t i = 0; i < report->work_count; i++) {
 		free((char *)(uintptr_t)report->works[i].recording);
-		if (report->galleries)
+		if (report->galleries) {
+			frames_end(&report->galleries[i]);
+			free(report->galleries[i].strips);
 			free(report->galleries[i].truth);
+		}
 	}
 	json_decref(report->tables);
 	free(report->rows);

@@ -258,6 +258,7 @@ static int run_work(struct run *run, uint32_t index, struct error *error)
 	const uint32_t clips = run->work->recording ? 1 : run->amount.clips;
 	for (uint32_t i = 0; i < clips && result == 0 && !interrupt_seen(); i++)
 		result = run_clip(run, i, error);
+	frames_end(run->gallery);
 	if (run->gallery->work)
 		gallery_end(run->gallery, run->report->options.out);
 	const int written = write_rows(run, &later);

@@ -13,6 +13,11 @@ void viewer_seen_id(char id[REPORT_NAME], uint32_t work)
 	snprintf(id, REPORT_NAME, "seen-%u-", work);
 }
 
+bool viewer_is_full(FILE *out)
+{
+	return ftell(out) > VIEWER_MOST_BYTES;
+}
+
 void viewer_write(FILE *out)
 {
 	fputs(report_viewer_html, out);
@@ -44,19 +49,19 @@ static bool put_strip(const struct report *report, FILE *out, const struct repor
 
 static void put_methods(const struct report *report, FILE *out, const struct report_gallery *gallery)
 {
-	const char *separator = "";
 	fputs(",\n\"methods\":[", out);
-	for (uint32_t i = 0; i < report->row_count; i++) {
-		const struct report_variant *variant = report->rows[i].variant;
-		char before[2 * REPORT_NAME];
-		if (report->rows[i].work != gallery->work || !variant->plain || !variant->engine)
-			continue;
-		snprintf(before, sizeof(before), "%s\n{\"name\":\"%s\",\"late\":%u,\"strip\":\"", separator, variant->method,
-				 variant->lag);
-		if (!put_strip(report, out, gallery, variant->method, before))
-			continue;
+	for (uint32_t i = 1; i < gallery->strip_count; i++) {
+		const struct report_strip *strip = &gallery->strips[i];
+		fprintf(out, "%s\n{\"name\":\"%s\",\"late\":%u,\"bases\":[", i > 1 ? "," : "", strip->variant->method,
+				strip->variant->lag);
+		for (uint32_t shown = 0; shown < gallery->shown_count; shown++) {
+			const struct report_base *base = &strip->bases[shown];
+			fprintf(out, "%s[%d,%u,%d]", shown ? "," : "", base->strip, base->picture, base->differences);
+		}
+		fprintf(out, "],\"differing\":%u,\"strip\":\"", strip->differing);
+		if (strip->differing)
+			put_strip(report, out, gallery, strip->variant->method, "");
 		fputs("\"}", out);
-		separator = ",";
 	}
 	fputs("]", out);
 }
@@ -80,14 +85,26 @@ static void put_work(const struct report *report, FILE *out, const struct report
 void viewer_write_data(const struct report *report, FILE *out)
 {
 	const char *separator = "\n";
+	uint32_t left_out = 0;
 	fputs("<script type=\"application/json\" id=\"viewer-data\">[", out);
 	for (uint32_t i = 0; i < report->work_count; i++) {
 		const struct report_gallery *gallery = &report->galleries[i];
 		if (!gallery->work || gallery->shown_count == 0)
 			continue;
+		if (viewer_is_full(out)) {
+			left_out++;
+			continue;
+		}
 		fputs(separator, out);
 		put_work(report, out, gallery);
 		separator = ",\n";
 	}
 	fprintf(out, "]</script>\n<script>\n%s</script>\n", report_viewer_js);
+	if (left_out)
+		fprintf(
+			out,
+			"<p id=\"left-out\">%u scenes or recordings are not in the viewer: a page of more than %ld MiB takes no "
+			"more "
+			"pictures. Theirs lie in <code>pictures</code>, beside this page; their figures are in the tables.</p>\n",
+			left_out, VIEWER_MOST_BYTES >> 20);
 }

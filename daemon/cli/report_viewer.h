@@ -14,6 +14,12 @@
 /* Beginning of the ids of the pictures that the pursuit camera saw of a work; a method or "truth" follows. */
 void viewer_seen_id(char id[REPORT_NAME], uint32_t work);
 
+/* Bytes of the page after which it gets no more pictures; tables and plots are not counted out. */
+#define VIEWER_MOST_BYTES (16L << 20)
+
+/* The page has so many bytes already. */
+bool viewer_is_full(FILE *out);
+
 /* The place where it is seen. */
 void viewer_write(FILE *out);
 

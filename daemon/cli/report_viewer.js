@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The viewer of the report. Its pictures are strips: those of the truth one
- * below the other, and of each method how far it is above the truth, then how
- * far below. Only drawing modes put them together, which are exact in 8 bits;
- * no pixel is ever read, which some browsers falsify.
+ * below the other, and of each method how far each picture is above another one
+ * (`bases`: of which strip, which, and where the differences are), then how far
+ * below. Only drawing modes put them together, which are exact in 8 bits; no
+ * pixel is ever read, which some browsers falsify. What is chosen is decoded,
+ * nothing before.
  */
 'use strict';
 (function () {
@@ -51,27 +53,37 @@
 		sideContext.drawImage(strip, 0, -index * side.height);
 	}
 
+	/* As it is displayed; strip 0 is the truth, the others are methods. */
+	async function drawDisplayed(strip, frame) {
+		if (strip === 0)
+			return drawStrip('source-over', await load(work().truth), frame);
+		const one = work().methods[strip - 1], [base, picture, differences] = one.bases[frame];
+		const own = await load(one.strip);
+		if (base >= 0)
+			await drawDisplayed(base, picture);
+		if (own && differences >= 0) {
+			drawStrip('lighter', own, differences);
+			drawStrip('difference', own, one.differing + differences);
+		}
+	}
+
 	/* Draws the picture of one method into `side`. */
 	async function drawSide(name, show, frame) {
-		const count = work().pictures.length;
-		const own = name === TRUTH ? null : await load(method(name).strip);
-		const base = await load(show === 'seen' ? seenBy(name) : show === 'displayed' ? work().truth : '');
 		sideContext.globalCompositeOperation = 'source-over';
 		sideContext.fillStyle = '#000';
 		sideContext.fillRect(0, 0, side.width, side.height);
 		if (show === 'seen') {
-			if (base)
-				sideContext.drawImage(base, 0, 0);
+			const seen = await load(seenBy(name));
+			if (seen)
+				sideContext.drawImage(seen, 0, 0);
 			return;
 		}
-		if (base)
-			drawStrip('source-over', base, frame);
-		if (own) {
-			drawStrip('lighter', own, frame);
-			drawStrip(base ? 'difference' : 'lighter', own, count + frame);
-		}
+		await drawDisplayed(name === TRUTH ? 0 : 1 + work().methods.indexOf(method(name)), frame);
+		if (show === 'displayed')
+			return;
+		drawStrip('difference', await load(work().truth), frame);
 		sideContext.globalCompositeOperation = 'lighter';
-		for (let factor = base ? 1 : Number(show); factor > 1; factor /= 2)
+		for (let factor = Number(show); factor > 1; factor /= 2)
 			sideContext.drawImage(side, 0, 0);
 	}
 

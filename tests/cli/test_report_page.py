@@ -8,6 +8,7 @@ import unittest
 
 import browser
 import common
+import make_pictures
 
 ARGUMENTS = ["--scenes", "fan,rings", "--methods", "hold,black,grid", "--sizes", "96x54", "--n", "2", "--vary", "none",
              "--antialias", "1"]
@@ -224,6 +225,42 @@ class ReportPage(unittest.TestCase):
         self.assertIn("prediction", status)
         self.browser.requests.clear()
         self.assertEqual(self.browser.problems, [])
+
+    def test_pictures_are_those_of_the_engine(self):
+        """To the bit, however they are put together from each other: what replay writes is what the viewer shows."""
+        path, out = os.path.join(self.folder, "fan.pursuit"), self.folder + "/exact"
+        methods = ["hold", "black", "mcif", "scatter", "grid", "adaptive-grid", "pursuit"]
+        for command in (["record", path, "--scene", "fan", "--size", "96x54", "--fps", "60", "--seconds", "0.2"],
+                        ["report", "--scenes", "none", "--recordings", path, "--methods", ",".join(methods), "--vary", "none",
+                         "--out", out]):
+            made = common.run(*command)
+            self.assertEqual(made.returncode, 0, made.stderr)
+        self.browser.open(out + "/report.html")
+        self.shown()
+        self.keys("split", "Home")
+        for method in methods:
+            frames = os.path.join(self.folder, method)
+            os.mkdir(frames)
+            made = common.run("replay", path, "--predict", "--method", method, "--write-frames", frames + "/%d.png")
+            self.assertEqual(made.returncode, 0, made.stderr)
+            self.choose("right", method)
+            self.keys("frame", "End")
+            for _ in range(3):
+                state = self.keys("previous", "Enter")
+                moment = float(self.browser.evaluate(
+                    "JSON.parse(document.getElementById('viewer-data').textContent)[0].pictures"
+                    f"[{state['frame']}].time"))
+                written = make_pictures.read_png(f"{frames}/{round(60 * moment)}.png")
+                self.assertTrue(self.pixels() == b"".join(written), (method, state))
+
+    def test_it_is_light(self):
+        """What repeats itself takes nothing, and no picture is read before it is looked at."""
+        strips = self.browser.evaluate("""JSON.parse(document.getElementById('viewer-data').textContent).flatMap(
+            (work) => work.methods.map((one) => [one.name, one.differing, one.strip.length]))""")
+        for name, differing, length in strips:
+            self.assertLessEqual(differing, {"hold": 0, "black": 1}.get(name, 6), strips)  # black: but for a UI
+            self.assertEqual(length == 0, differing == 0, strips)
+        self.assertLess(os.path.getsize(self.page), 650000)
 
     def test_narrow_and_dark(self):
         def background():
