@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Makes pictures of the documents with the real engine; needs Chromium, which puts the labels on.
 
-usage: make_pictures.py BUILD OUT    BUILD: a build folder; OUT: docs/pictures
+usage: make_pictures.py BUILD OUT [NAME...]    BUILD: a build folder; OUT: docs/pictures; without a name all of them
 
   eye.png           what an eye sees that follows the motion: 30 frames a second held, with Pursuit, and 120 rendered
   mistake-KIND.png  an in-between, and one row of the picture over time, with a mistake in the stream
@@ -26,14 +26,32 @@ MISTAKES = {
     "sign": ("trees", (350, 175), 2), "ndc": ("trees", (350, 175), 2), "twice": ("trees", (350, 175), 2),
     "depth-reversed": ("trees", (350, 175), 2), "jitter-motion": ("still", (320, 180), 6),
 }
+NAMES = ["eye.png", *(f"mistake-{kind}.png" for kind in MISTAKES)]
 
 
 def run(*arguments):
     subprocess.run(arguments, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
+def unfilter(kind, row, above):
+    """A row of a PNG with its filter taken off, in place; three bytes a pixel."""
+    for i, value in enumerate(row):
+        left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
+        up = above[i]
+        if kind == 1:
+            value += left
+        elif kind == 2:
+            value += up
+        elif kind == 3:
+            value += (left + up) // 2
+        else:
+            near = [abs(up - corner), abs(left - corner), abs(left + up - 2 * corner)]
+            value += (left, up, corner)[near.index(min(near))]
+        row[i] = value & 255
+
+
 def read_png(path):
-    """Rows of RGB bytes of a PNG as `pursuit` writes it: filters 0 and 1, 8 bits."""
+    """Rows of RGB bytes of a PNG of 8 bits."""
     with open(path, "rb") as file:
         data = file.read()
     at, packed = 8, b""
@@ -45,14 +63,13 @@ def read_png(path):
             width, height = struct.unpack(">II", content[:8])
         elif kind == b"IDAT":
             packed += content
-    raw, stride, rows = zlib.decompress(packed), 3 * width + 1, []
+    raw, stride, rows = zlib.decompress(packed), 3 * width + 1, [bytes(3 * width)]
     for y in range(height):
         row = bytearray(raw[y * stride + 1:(y + 1) * stride])
-        if raw[y * stride] == 1:
-            for i in range(3, len(row)):
-                row[i] = (row[i] + row[i - 3]) & 255
+        if raw[y * stride]:
+            unfilter(raw[y * stride], row, rows[-1])
         rows.append(bytes(row))
-    return rows
+    return rows[1:]
 
 
 def write_png(path, rows):
@@ -91,7 +108,7 @@ class Maker:
         run(self.pursuit, "report", "--scenes", "trees", "--n", "4", "--vary", "none", "--methods", "hold,pursuit", "--out", out)
         captions = {"hold": "30 frames a second, each shown four times", "pursuit": "the same 30 frames, with Pursuit",
                     "rendered": "120 rendered frames a second"}
-        self.page("eye.png", [(f"{out}/pictures/seen-0-trees-{name}.png", 400, caption)
+        self.page("eye.png", [(f"{out}/pictures/seen-0-trees-{name}.png", 320, caption)
                               for name, caption in captions.items()])
 
     def replay(self, scene, kind):
@@ -116,12 +133,18 @@ class Maker:
         write_png(rows, [picture[middle[1]][left:left + 3 * width] for picture in pictures])
         return crop, rows
 
-    def mistakes(self):
-        for kind, (scene, middle, zoom) in MISTAKES.items():
-            crop, rows = self.panels(self.replay(scene, kind), middle, zoom)
-            _, good = self.panels(self.replay(scene, "none"), middle, zoom)
-            self.page(f"mistake-{kind}.png", [(crop, PANEL[0], "an in-between"), (rows, PANEL[0], "its middle row over time"),
-                                              (good, PANEL[0], "as it should be")])
+    def mistake(self, kind):
+        scene, middle, zoom = MISTAKES[kind]
+        crop, rows = self.panels(self.replay(scene, kind), middle, zoom)
+        _, good = self.panels(self.replay(scene, "none"), middle, zoom)
+        self.page(f"mistake-{kind}.png", [(crop, PANEL[0], "an in-between"), (rows, PANEL[0], "its middle row over time"),
+                                          (good, PANEL[0], "as it should be")])
+
+    def make(self, name):
+        if name == "eye.png":
+            self.eye()
+        else:
+            self.mistake(name.removeprefix("mistake-").removesuffix(".png"))
 
     def close(self):
         self.browser.close()
@@ -131,9 +154,8 @@ class Maker:
 def main():
     maker = Maker(sys.argv[1], sys.argv[2])
     try:
-        if sys.argv[3:] != ["mistakes"]:
-            maker.eye()
-        maker.mistakes()
+        for name in sys.argv[3:] or NAMES:
+            maker.make(name)
     finally:
         maker.close()
 
