@@ -14,6 +14,7 @@
 #include "tests/test.h"
 
 #define MS UINT64_C(1000000)
+#define SECOND (1000 * MS)
 #define PATIENCE_S 5
 #define FLIPS 64u
 
@@ -286,6 +287,34 @@ static void test_broken_fences(void)
 	close_with_gl(presenter);
 }
 
+static void *signal_after_a_second(void *data)
+{
+	(void)data;
+	wait_until(clock_now(&bench.clock) + SECOND);
+	fake_gl_signal();
+	return NULL;
+}
+
+/* The GPU hangs for longer than a flip may take otherwise; then all goes on. So does it when the presenter ends. */
+static void test_the_gpu_hangs(void)
+{
+	pthread_t thread;
+	fake_gl.has_fences = true;
+	struct presenter *presenter = open_with_gl();
+	const uint64_t vblank = present_fenced(presenter, 1);
+	wait_until(time_of(presenter, vblank) + 4 * SECOND);
+	CHECK(!bench.lost);
+	fake_gl_signal();
+	show_picture(presenter, 120, 120, 1, 2);
+	wait_until(time_of(presenter, present_fenced(presenter, 3)) + MS);
+	CHECK_INT(pthread_create(&thread, NULL, signal_after_a_second, NULL), 0);
+	close_with_gl(presenter);
+	pthread_join(thread, NULL);
+	presenter = open_presenter("160x120@120", false);
+	show_picture(presenter, 120, 120, 1, 1);
+	presenter_destroy(&presenter);
+}
+
 /* Larger ones in GL: without fences they are waited for, as GL makes them smaller after its user has done with them. */
 static void test_larger_pictures_in_gl(void)
 {
@@ -367,6 +396,7 @@ int main(void)
 	RUN(test_a_larger_picture_that_stays);
 	RUN(test_fences);
 	RUN(test_broken_fences);
+	RUN(test_the_gpu_hangs);
 	RUN(test_larger_pictures_in_gl);
 	RUN(test_one_after_another);
 	return test_result();
