@@ -430,8 +430,8 @@ void draw_empty(struct render *render, uint64_t vblank)
 	image.holds = 0;
 	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
 	view_draw(render, &image);
-	add_cost(render, &render->empty_cost, start_ns);
 	render->front_black = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
+	add_cost(render, &render->empty_cost, start_ns);
 	render->front_plain &= !render->front_black;
 	if (!render->front_black)
 		impl->release(render->presenter, &image);

@@ -12,7 +12,9 @@
  * late enough that a real frame can still replace an in-between, early enough
  * for the kernel to have it done. If there is none by then, one that comes
  * before the vblank goes straight to the kernel. Two events come back: the
- * vblank (asked for one at a time, time stamp in ns) and the flip.
+ * vblank (asked for one at a time, time stamp in ns) and the flip. One that is
+ * larger than the display is drawn beside it, and made smaller when it is queued.
+ * One that the GPU draws still has a fence, for which the kernel waits.
  *
  * While another console is on display, vblanks are counted by the clock and
  * pictures go nowhere, so that client and engine notice nothing.

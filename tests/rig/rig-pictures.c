@@ -373,14 +373,31 @@ static void show_one_and_go(const char *mode, bool share_gl)
 	CHECK(!bench.lost);
 }
 
+/* A connector that is not there: said, and the next one works. */
+static void check_no_such_connector(void)
+{
+	struct error error = {""};
+	const struct presenter_params params = {.clock = &bench.clock,
+											.log = &bench.log,
+											.refresh_numerator = 120,
+											.refresh_denominator = 1,
+											.options = {.connector = "HDMI-A-1"},
+											.flip = on_flip,
+											.lost = on_lost};
+	CHECK(presenter_create("kms", &params, &error) == NULL);
+	CHECK(strstr(error.text, "has no connector \"HDMI-A-1\"; it has Virtual-1") != NULL);
+}
+
 /* Another mode, with GL and without: nothing stays open or on display. */
 static void test_one_after_another(void)
 {
 	static const char *const modes[] = {"160x120@120", "640x480@60", "320x240@100"};
 	show_one_and_go(modes[0], true);
 	const uint32_t before = open_files();
-	for (uint32_t i = 0; i < 9; i++)
+	for (uint32_t i = 0; i < 9; i++) {
+		check_no_such_connector();
 		show_one_and_go(modes[i % 3], i % 2 == 0);
+	}
 	CHECK_INT(open_files(), before);
 	CHECK_INT(status_of("Threads:"), 1);
 	CHECK_INT(status_of("VmLck:"), 0);
