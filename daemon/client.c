@@ -10,6 +10,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include "daemon/printable.h"
 #include "daemon/version.h"
 
 /* A client that floods gets so many packets read, then the others have their turn. */
@@ -112,19 +113,10 @@ __attribute__((format(printf, 4, 5))) static void malformed(struct client *clien
 
 /* ---- HELLO ---- */
 
-void client_clean_name(char *name)
-{
-	json_t *string = json_string(name);
-	for (char *c = name; *c; c++)
-		if ((unsigned char)*c < ' ' || *c == '\x7f' || (!string && (unsigned char)*c >= 0x80))
-			*c = '?';
-	json_decref(string);
-}
-
 static void set_name(struct client *client, const char *name)
 {
 	snprintf(client->name, sizeof(client->name), "%s", *name ? name : "unnamed");
-	client_clean_name(client->name);
+	printable_clean(client->name);
 }
 
 static void welcome(struct client *client, uint32_t serial)

@@ -62,9 +62,6 @@ void client_send(struct client *client, const void *message, size_t bytes, int f
 void client_refuse(struct client *client, uint32_t serial, uint64_t stream_id, bool fatal,
 				   const struct refusal *refusal);
 
-/* Names are shown in logs and in JSON: what is no printable UTF-8 is replaced. */
-void client_clean_name(char *name);
-
 struct client_stream *client_find_stream(struct client *client, uint64_t stream_id);
 /* Says STREAM_CLOSED (serial 0: unasked). */
 void client_close_stream(struct client_stream *entry, uint32_t serial);

@@ -16,6 +16,7 @@
 
 #include "daemon/client.h"
 #include "daemon/keys.h"
+#include "daemon/printable.h"
 #include "daemon/version.h"
 
 #define TIMELINE_ROWS 400u
@@ -244,7 +245,7 @@ static json_t *clean_string(const char *text)
 {
 	char clean[PATH_MAX];
 	snprintf(clean, sizeof(clean), "%s", text);
-	client_clean_name(clean);
+	printable_clean(clean);
 	return json_string(clean);
 }
 

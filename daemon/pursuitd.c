@@ -90,6 +90,12 @@ static void print_version(void)
 	printf("pursuitd %s\n", PURSUITD_VERSION);
 }
 
+static int not_printed(void)
+{
+	fprintf(stderr, "pursuitd: standard output cannot be written\n");
+	return 1;
+}
+
 /* Is there an argument that asks for text and nothing else? */
 static bool tell(int argc, char **argv)
 {
@@ -311,7 +317,7 @@ int main(int argc, char **argv)
 	int status;
 
 	if (tell(argc, argv))
-		return 0;
+		return fflush(stdout) == 0 && !ferror(stdout) ? 0 : not_printed();
 	if (arguments_read(&arguments, argc, argv, &error) < 0) {
 		arguments_finish(&arguments);
 		return usage_error(error.text);

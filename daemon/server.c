@@ -14,6 +14,7 @@
 
 #include "daemon/client.h"
 #include "daemon/listener.h"
+#include "daemon/printable.h"
 
 /* A connection that has not said HELLO for so long makes room for another. */
 #define SILENCE_NS UINT64_C(1000000000)
@@ -350,7 +351,7 @@ static json_t *stream_json(const struct server *server, const struct client *cli
 	struct stream_counters *c = &stream->counters;
 	char application[EXECUTABLE_NAME_BYTES];
 	snprintf(application, sizeof(application), "%s", stream->application);
-	client_clean_name(application);
+	printable_clean(application);
 	const uint64_t interval_ns = atomic_load(&c->interval_ns);
 	return json_pack("{s:I, s:I, s:b, s:s, s:s, s:i, s:i, s:i, s:i, s:I, s:I, s:I, s:I, s:f}", "id",
 					 (json_int_t)stream->stream_id, "client_id", (json_int_t)client->id, "shown",

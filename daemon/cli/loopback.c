@@ -16,12 +16,18 @@
 #define PRIORITY 20
 #define FIRST_TRIES 3u
 
+bool loopback_are_lines(const char *lines)
+{
+	const char *colon = strchr(lines, ':');
+	return colon && colon != lines && colon[1] && !strchr(lines, ',') && colon - lines < (ptrdiff_t)CHIP_NAME_BYTES &&
+		   strlen(colon + 1) < CHIP_NAME_BYTES;
+}
+
 static int open_both(const struct loopback_params *params, struct chip *chips[2], struct error *error)
 {
 	char out[CHIP_NAME_BYTES], in[CHIP_NAME_BYTES];
 	const char *colon = strchr(params->lines, ':');
-	if (!colon || colon == params->lines || !colon[1] || strchr(params->lines, ',') ||
-		colon - params->lines >= (ptrdiff_t)sizeof(out) || strlen(colon + 1) >= sizeof(in))
+	if (!loopback_are_lines(params->lines))
 		return error_set(error, -EINVAL, "--loopback is %.64s, must be OUT:IN, two lines by offset or name",
 						 params->lines);
 	snprintf(out, sizeof(out), "%.*s", (int)(colon - params->lines), params->lines);

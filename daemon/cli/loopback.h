@@ -5,6 +5,7 @@
 #ifndef PURSUIT_CLI_LOOPBACK_H
 #define PURSUIT_CLI_LOOPBACK_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "daemon/error.h"
@@ -23,6 +24,9 @@ struct loopback_result {
 	uint32_t lost;                    /* no edge within 100 ms */
 	char text[160];                   /* the chip */
 };
+
+/* Is it OUT:IN, one line each? */
+bool loopback_are_lines(const char *lines);
 
 /* Takes count x 2 x interval. 0 or a negative errno with a sentence. */
 int loopback_measure(const struct loopback_params *params, struct loopback_result *result, struct error *error);

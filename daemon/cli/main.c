@@ -66,12 +66,14 @@ static int unknown_verb(const char *name)
 	return STATUS_USAGE;
 }
 
-/* What could not be printed is not done. */
-static int run(const struct verb *verb, int argc, char **argv)
+/* What could not be printed is not done. `name`: of a verb, or NULL. */
+static int printed(const char *name, int status)
 {
-	const int status = verb->run(argc, argv);
 	const bool written = fflush(stdout) == 0 && !ferror(stdout);
-	return written || status != STATUS_DONE ? status : args_failed(verb->name, "standard output cannot be written");
+	if (written || status != STATUS_DONE)
+		return status;
+	fprintf(stderr, "pursuit%s%s: standard output cannot be written\n", name ? " " : "", name ? name : "");
+	return STATUS_FAILED;
 }
 
 int main(int argc, char **argv)
@@ -83,20 +85,20 @@ int main(int argc, char **argv)
 	}
 	if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
 		print_help(stdout);
-		return STATUS_DONE;
+		return printed(NULL, STATUS_DONE);
 	}
 	if (strcmp(argv[1], "--version") == 0) {
 		printf("pursuit %d.%d.%d\n", PURSUIT_VERSION_MAJOR, PURSUIT_VERSION_MINOR, PURSUIT_VERSION_PATCH);
-		return STATUS_DONE;
+		return printed(NULL, STATUS_DONE);
 	}
 	if (strcmp(argv[1], "--print-verbs") == 0) { /* for the programs that make man pages and shell completions */
 		for (const struct verb *verb = verbs; verb->name; verb++)
 			printf("%s\t%s\t%s\n", verb->name, verb->help, verb->related);
-		return STATUS_DONE;
+		return printed(NULL, STATUS_DONE);
 	}
 	for (const struct verb *verb = verbs; verb->name; verb++) {
 		if (strcmp(verb->name, argv[1]) == 0)
-			return run(verb, argc - 1, argv + 1);
+			return printed(verb->name, verb->run(argc - 1, argv + 1));
 	}
 	return unknown_verb(argv[1]);
 }

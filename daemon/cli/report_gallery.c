@@ -119,10 +119,11 @@ static struct picture part_of(const struct clip *clip, const struct crop *part, 
 	return (struct picture){data + part->y * stride + 4 * (size_t)part->x, stride, part->width, part->height};
 }
 
-int gallery_add(struct report_gallery *gallery, const char *method, const struct clip *clip, uint8_t *const *pictures,
-				struct error *error)
+int gallery_add(struct report_gallery *gallery, const struct report_variant *variant, const struct clip *clip,
+				uint8_t *const *pictures, struct error *error)
 {
-	uint32_t last = clip->shown_count;
+	const uint32_t late = variant->lag * clip->reals[0].shown_count;
+	uint32_t last = clip->shown_count > late ? clip->shown_count - late : 0;
 	while (last > 0 && !clip->shown[last - 1].scored)
 		last--;
 	if (last == 0)
@@ -132,12 +133,13 @@ int gallery_add(struct report_gallery *gallery, const char *method, const struct
 	while (real > 0 && clip->shown[real].request.show == ENGINE_SHOW_IN_BETWEEN)
 		real--;
 	const struct crop part = sheet_part(gallery, clip);
-	const struct picture shown = part_of(clip, &part, pictures[last]);
+	const struct picture shown = part_of(clip, &part, pictures[last + late]);
 	const struct picture truth = part_of(clip, &part, clip->shown[last].truth);
 	const bool predicted = clip->site_count == 0 && last > 0 && clip->shown[last - 1].truth;
-	const struct picture before = part_of(clip, &part, predicted ? clip->shown[last - 1].truth : pictures[real]);
+	const struct picture before = part_of(clip, &part, predicted ? clip->shown[last - 1].truth : pictures[real + late]);
 	char label[REPORT_NAME];
-	snprintf(label, sizeof(label), "%s: PSNR %.2f dB here", method, measure_psnr(&shown, &truth));
+	snprintf(label, sizeof(label), "%s%s: PSNR %.2f dB here", variant->method, late ? ", late" : "",
+			 measure_psnr(&shown, &truth));
 	return contact_add(gallery->sheet, label, &before, &shown, &truth, error);
 }
 

@@ -12,8 +12,8 @@ int gallery_begin(struct report_gallery *gallery, const struct report_work *work
 				  struct error *error);
 
 /* A row of the contact sheet: the last scored in-between of the clip, that part of it, twice as large. */
-int gallery_add(struct report_gallery *gallery, const char *method, const struct clip *clip, uint8_t *const *pictures,
-				struct error *error);
+int gallery_add(struct report_gallery *gallery, const struct report_variant *variant, const struct clip *clip,
+				uint8_t *const *pictures, struct error *error);
 
 /* Writes the contact sheet into the folder; what cannot be written is named on stderr. */
 void gallery_end(struct report_gallery *gallery, const char *folder);

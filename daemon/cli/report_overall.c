@@ -127,6 +127,13 @@ static void print_number(FILE *out, int width, int digits, double value)
 
 static void print_means(const struct report *report, FILE *out)
 {
+	bool any = false;
+	for (uint32_t i = 0; i < report->work_count; i++)
+		any |= counts(report, &report->works[i]);
+	if (!any) {
+		fputs("No scene of the first N and size moves, so there is no mean; report.csv has each row.\n", out);
+		return;
+	}
 	fprintf(out, "Mean over the scenes that move, N = %u, %ux%u:\n%-28s %8s %8s", report->works[0].n,
 			report->works[0].size.width, report->works[0].size.height, "", "ms p50", "ms p99");
 	for (size_t i = 0; i < PRINTED; i++)

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "daemon/printable.h"
 #include "report.h"
 #include "report_frames.h"
 
@@ -107,7 +108,7 @@ static int plan_recordings(struct report *report)
 		struct report_work work = {.recording = strdup(path), .n = 2};
 		char *copy = strdup(path);
 		if (copy)
-			snprintf(work.name, sizeof(work.name), "%.63s", basename(copy));
+			printable_copy(work.name, sizeof(work.name), basename(copy));
 		free(copy);
 		char *dot = strrchr(work.name, '.');
 		if (dot && dot != work.name)

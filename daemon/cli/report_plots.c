@@ -7,6 +7,7 @@
  */
 
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
 #include <stdlib.h>
@@ -56,6 +57,8 @@ static bool plot_close(struct plot *plot, const struct report *report)
 	char *arguments[] = {(char[]){"gnuplot"}, file, NULL};
 	posix_spawn_file_actions_init(&actions);
 	posix_spawn_file_actions_addchdir_np(&actions, folder);
+	/* Its warnings (of curves that are flat) say nothing to who made no plot. */
+	posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "gnuplot.log", O_WRONLY | O_CREAT | O_APPEND, 0666);
 	const int failed = posix_spawnp(&child, arguments[0], &actions, NULL, arguments, environ);
 	posix_spawn_file_actions_destroy(&actions);
 	if (failed)
@@ -213,9 +216,32 @@ static bool plot_time(const struct report *report, const struct report_work *wor
 	return plot_close(&plot, report);
 }
 
+/* Enough moving pixels of a class for a point. */
+static bool is_point(const struct squared_error *bin)
+{
+	return bin->count > 2000 && bin->sum > 0.0;
+}
+
+static bool has_speeds(const struct report *report)
+{
+	for (uint32_t v = 0; v < report->variant_count; v++) {
+		struct squared_error bins[CAMERA_SPEEDS];
+		const struct report_variant *variant = &report->variants[v];
+		if (!variant->plain || !report_speed_bins(report, variant, bins))
+			continue;
+		for (uint32_t bin = 0; bin < CAMERA_SPEEDS; bin++) {
+			if (is_point(&bins[bin]))
+				return true;
+		}
+	}
+	return false;
+}
+
 static bool plot_speed(const struct report *report)
 {
 	struct plot plot;
+	if (!has_speeds(report))
+		return true;
 	if (!plot_open(&plot, report, "speed", 900, 520))
 		return false;
 	fprintf(plot.script,
@@ -233,7 +259,7 @@ static bool plot_speed(const struct report *report)
 			if (pass == 0) {
 				fprintf(plot.script, "$s%u << EOD\n", v);
 				for (uint32_t bin = 0; bin < CAMERA_SPEEDS; bin++) {
-					if (bins[bin].count > 2000 && bins[bin].sum > 0.0)
+					if (is_point(&bins[bin]))
 						fprintf(plot.script, "%g %g\n", 7.5 * (1u << bin), squared_error_root(&bins[bin]));
 				}
 				fprintf(plot.script, "EOD\n");

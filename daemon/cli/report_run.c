@@ -172,7 +172,7 @@ static int score_row(struct run *run, struct report_row *row, const struct clip 
 	if (result == 0)
 		result = scorer_add(run->scorer, &row->score, clip, run->pictures, crop, row->seen, error);
 	if (result == 0 && kept && row->variant->plain && row->variant->engine)
-		result = gallery_add(run->gallery, row->variant->method, clip, run->pictures, error);
+		result = gallery_add(run->gallery, row->variant, clip, run->pictures, error);
 	if (result == 0 && kept && row->variant->plain && row->variant->engine)
 		result = frames_add(run->report, run->gallery, row->variant, clip, run->pictures, error);
 	return result;

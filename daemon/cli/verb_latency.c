@@ -184,5 +184,7 @@ int verb_latency(int argc, char **argv)
 		return status;
 	if (choices.loopback && (choices.log_count || choices.svg))
 		return args_wrong(VERB, "--loopback goes with neither logs nor --svg");
+	if (choices.loopback && !loopback_are_lines(choices.loopback))
+		return args_wrong(VERB, "--loopback is %.64s, must be OUT:IN, two lines by offset or name", choices.loopback);
 	return choices.loopback ? run_loopback(&choices) : report_logs(&choices);
 }

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 #include "interrupt.h"
 #include "report_cost.h"
@@ -93,6 +94,8 @@ static int check_options(const struct report_options *options)
 		return args_wrong(VERB, "--fail-under is %s, must be %s", options->fail_under, error.text);
 	if (options->fail_worse >= 0.0 && !options->baseline)
 		return args_wrong(VERB, "--fail-worse goes with --baseline");
+	if (options->baseline && access(options->baseline, R_OK) < 0)
+		return args_failed(VERB, "%s: %s", options->baseline, strerror(errno));
 	if (strlen(options->out) > 3000)
 		return args_wrong(VERB, "--out is too long");
 	return STATUS_DONE;

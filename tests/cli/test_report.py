@@ -268,6 +268,35 @@ class Report(common.Case):
             pass
         self.assertIn("file", self.must("report", *SMALL, "--out", blocked + "/x", status=1).stderr)
 
+    def test_names_of_recordings_may_be_anything(self):
+        """What is no text, or too long for one, is cut and cleaned; nothing of the report is lost for it."""
+        long = "\u00e4" * 60
+        for name, shown in (b"r\xff\xfe.pursuit", "r??"), (long.encode() + b".pursuit", long[:31]):
+            path = os.path.join(os.fsencode(self.folder), name)
+            made = common.run("record", "x", "--scene", "fan", "--size", "96x54", "--fps", "60", "--seconds", "0.2",
+                              cwd=self.folder)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            os.rename(self.path("x"), path)
+            self.must("report", "--scenes", "none", "--recordings", os.fsdecode(path), "--methods", "hold", "--out",
+                      self.path("out"))
+            with open(self.path("out/report.json"), encoding="utf-8") as file:
+                self.assertEqual([row["source"] for row in json.load(file)["rows"]], [shown])
+            with open(self.path("out/report.html"), encoding="utf-8") as page:
+                self.assertIn(shown + ", N = 2", page.read())
+
+    def test_nothing_moves(self):
+        result = self.must("report", "--scenes", "still", "--sizes", "64x36", "--n", "2", "--methods", "hold,grid", "--vary",
+                           "none", "--antialias", "1", "--out", self.path("out"))
+        self.assertIn("No scene of the first N and size moves", result.stdout)
+        self.assertNotIn("arning", result.stderr)
+        if shutil.which("gnuplot"):
+            self.assertNotIn("no plots", result.stderr)
+
+    def test_baseline_is_looked_for_first(self):
+        result = self.must("report", "--baseline", self.path("none.json"), "--out", self.path("out"), status=1, timeout=60)
+        self.assertIn("none.json: No such file", result.stderr)
+        self.assertFalse(os.path.exists(self.path("out")))
+
 
 if __name__ == "__main__":
     common.main()

@@ -163,6 +163,14 @@ class Style(common.Case):
                                         stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
                 self.assertEqual(result.returncode, 1, result.stderr)
 
+    def test_texts_on_a_full_disk(self):
+        for program in [common.PURSUIT, "--help"], [common.PURSUIT, "--version"], [common.PURSUIT, "record", "--help"], \
+                [PURSUITD, "--help"], [PURSUITD, "--version"], [PURSUITD, "--print-config"]:
+            with self.subTest(program=program), open("/dev/full", "w") as full:
+                result = subprocess.run(program, stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
+                self.assertEqual(result.returncode, 1)
+                self.assertRegex(result.stderr, r"^pursuit[a-z ]*: standard output cannot be written\n$")
+
 
 if __name__ == "__main__":
     common.main()

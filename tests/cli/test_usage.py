@@ -57,6 +57,7 @@ class Usage(common.Case):
             (["replay", "x", "--cell", "3"], "cell"),
             (["demo", "--scene", "nowhere"], "there is no scene nowhere"),
             (["demo", "--seconds", "-1"], "--seconds is -1"),
+            (["latency", "--loopback", "GPIO17"], "--loopback is GPIO17, must be OUT:IN"),
             (["set"], "an argument is missing"),
             (["set", "blur"], "blur is not of the form NAME=VALUE"),
         ]:
