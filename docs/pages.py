@@ -5,6 +5,8 @@ usage: pages.py man TEMPLATE.scd PURSUIT PURSUITD     an scdoc page: @VERBS@ and
        pages.py roff SCDOC PAGE.scd                   what scdoc makes of it, without what mandoc -Tlint complains of
        pages.py verb TEMPLATE.scd VERB PURSUIT PURSUITD   the page of a verb
        pages.py bash|zsh|fish PURSUIT PURSUITD        a completion script
+       pages.py links PAGE.md HEADER                  a page of the top folder as it is installed, beside those of docs/;
+                                                      HEADER: where pursuit.h is from there
 """
 import re
 import subprocess
@@ -128,6 +130,15 @@ def roff(scdoc, page):
     return "\n".join(line.replace("\0", " ") for line in lines) + "\n"
 
 
+def links(page, header):
+    """In the tree the pages lie in docs/ and examples in client/; installed, all of them lie in one folder."""
+    with open(page, encoding="utf-8") as source:
+        text = source.read()
+    for here, there in (("docs/", ""), ("client/examples", "examples"), ("client/pursuit.h", header)):
+        text = text.replace("](" + here, "](" + there)
+    return text
+
+
 # ---- completions ----
 
 
@@ -199,7 +210,9 @@ def main():
     if kind == "roff":
         sys.stdout.write(roff(sys.argv[2], sys.argv[3]))
         return
-    if kind == "man":
+    if kind == "links":
+        sys.stdout.write(links(sys.argv[2], sys.argv[3]))
+    elif kind == "man":
         sys.stdout.write(man(sys.argv[2], *programs))
     elif kind == "verb":
         sys.stdout.write(man_verb(sys.argv[2], sys.argv[3], *programs))

@@ -41,6 +41,11 @@ def files_of(root):
     return [os.path.relpath(os.path.join(folder, name), root) for folder, _, names in os.walk(root) for name in names]
 
 
+def slug(heading):
+    """What a link to a heading says."""
+    return re.sub(r"[^a-z0-9 -]", "", heading.lstrip("#").strip().lower()).replace(" ", "-")
+
+
 def run(*arguments, **options):
     return subprocess.run(arguments, capture_output=True, text=True, timeout=240, **options)
 
@@ -67,7 +72,7 @@ class Install(unittest.TestCase):
     def test_places(self):
         for end in (
             "/bin/pursuit", "/bin/pursuitd", "/include/pursuit.h", "/libpursuit.so", "/libpursuit.so.0",
-            "/pkgconfig/libpursuit.pc", "/doc/pursuit/LICENSE", "/doc/pursuit/CHANGELOG.md", "/doc/pursuit/README.md",
+            "/pkgconfig/libpursuit.pc", "/doc/pursuit/LICENSE", "/doc/pursuit/CHANGELOG.md", "/doc/pursuit/README.md", "/doc/pursuit/CONTRIBUTING.md",
             "/bash-completion/completions/pursuit", "/zsh/site-functions/_pursuit",
             "/fish/vendor_completions.d/pursuit.fish",
             "/doc/pursuit/examples/example-memory.c", "/doc/pursuit/pictures/mistake-sign.png",
@@ -87,16 +92,23 @@ class Install(unittest.TestCase):
                 self.assertIn(".TH", text.read())
 
     def test_links_of_pages(self):
-        """What an installed page leads to was installed too; pages of the top folder say docs/, which is beside them here."""
+        """What an installed page leads to was installed too, down to the heading."""
+        seen = 0
         for name in self.files:
             if not name.endswith(".md") or "/doc/pursuit/" not in name:
                 continue
             with open(os.path.join(self.root, name), encoding="utf-8") as page:
-                links = re.findall(r"\]\((?!https?:)([^)#]+\.(?:md|png|svg|html))", page.read())
+                links = re.findall(r"\]\((?!https?:)([^)]+)\)", page.read())
             for link in links:
-                beside = link.removeprefix("docs/")
-                where = os.path.normpath(os.path.join(os.path.dirname(name), beside))
-                self.assertTrue(os.path.exists(os.path.join(self.root, where)) or "CONTRIBUTING" in link, f"{name}: {link}")
+                path, _, heading = link.partition("#")
+                where = os.path.normpath(os.path.join(self.root, os.path.dirname(name), path) if path else
+                                         os.path.join(self.root, name))
+                self.assertTrue(os.path.exists(where), f"{name}: {link}")
+                if heading:
+                    with open(where, encoding="utf-8") as led_to:
+                        self.assertIn(heading, [slug(line) for line in led_to if line.startswith("#")], f"{name}: {link}")
+                seen += 1
+        self.assertGreater(seen, 25)
 
     def test_nothing_else(self):
         for name in self.files:
