@@ -104,7 +104,7 @@ class Latency(Case):
         empty = self.log("empty.csv", rows=0)
         self.assertIn("has no row yet", self.must("latency", empty, status=1).stderr)
         self.must("latency", path, path, path, status=2)
-        self.must("latency", "--loopback", "1", status=1)
+        self.must("latency", "--loopback", "1", status=2)
         self.must("latency", "--loopback", "1:2", path, status=2)
         self.assertIn("say of which chip", self.must("latency", "--loopback", "1:2", status=1).stderr)
 
