@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 #define PIXELS ((size_t)RAW_WIDTH * RAW_HEIGHT)
@@ -21,29 +22,14 @@ static struct fixture fixture;
 static struct raw_reply reply;
 static int control;
 
-static json_t *ask(const char *request)
-{
-	CHECK_INT(raw_control(control, request, -1, &reply), 0);
-	return json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-}
-
-static json_int_t figure(const char *request, const char *name)
-{
-	json_t *object = ask(request);
-	const json_t *value = json_object_get(object, name);
-	const json_int_t figure = json_is_array(value) ? (json_int_t)json_array_size(value) : json_integer_value(value);
-	json_decref(object);
-	return figure;
-}
-
 /* Waits until nothing more is shown: the picture stays. */
 static void wait_for_rest(void)
 {
-	json_int_t before = -1, now = figure("timeline 0 0", "total");
+	json_int_t before = -1, now = question_figure(control, "timeline 0 0", "total");
 	for (int i = 0; i < 30 && now != before; i++) {
 		before = now;
 		sleep_ms(400);
-		now = figure("timeline 0 0", "total");
+		now = question_figure(control, "timeline 0 0", "total");
 	}
 	CHECK_INT(now, before);
 }
@@ -105,7 +91,7 @@ static void close_one(struct raw_stream *stream)
 /* A process that shows this grey and is killed. */
 static void show_and_die(int grey)
 {
-	const json_int_t streams = figure("status", "streams");
+	const json_int_t streams = question_figure(control, "status", "streams");
 	const pid_t pid = fork();
 	if (pid == 0) {
 		struct raw_stream stream;
@@ -116,9 +102,9 @@ static void show_and_die(int grey)
 	int status = 0;
 	waitpid(pid, &status, 0);
 	CHECK(WIFSIGNALED(status));
-	for (int i = 0; i < 2000 && figure("status", "streams") > streams; i++)
+	for (int i = 0; i < 2000 && question_figure(control, "status", "streams") > streams; i++)
 		sleep_ms(5);
-	CHECK_INT(figure("status", "streams"), streams);
+	CHECK_INT(question_figure(control, "status", "streams"), streams);
 	wait_for_rest();
 }
 
@@ -180,7 +166,7 @@ static void test_pause_is_no_exit(void)
 	open_one(&stream);
 	play(&stream, 150);
 	close_one(&stream);
-	for (int i = 0; i < 2000 && figure("status", "streams") > 0; i++)
+	for (int i = 0; i < 2000 && question_figure(control, "status", "streams") > 0; i++)
 		sleep_ms(5);
 	wait_for_rest();
 	grey = stop(path);

@@ -11,6 +11,7 @@
 
 #include "daemon/live.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 static struct fixture fixture;
@@ -20,26 +21,6 @@ static int fd;
 static const char *answer(void)
 {
 	return (const char *)reply.raw + sizeof(reply.control);
-}
-
-static bool settings_hold(const char *line)
-{
-	CHECK_INT(raw_control(fd, "settings", -1, &reply), 0);
-	return strstr(answer(), line) != NULL;
-}
-
-static json_t *status(void)
-{
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	return json_loads(answer(), 0, NULL);
-}
-
-static json_int_t figure(const char *object_name, const char *name)
-{
-	json_t *all = status(), *object = object_name ? json_object_get(all, object_name) : all;
-	const json_int_t value = json_integer_value(json_object_get(object, name));
-	json_decref(all);
-	return value;
 }
 
 static void play_one(struct raw_stream *stream)
@@ -84,15 +65,15 @@ static void test_each_setting_of_the_picture(struct raw_stream *stream)
 		snprintf(request, sizeof(request), "set %s=%s", changes[i][0], changes[i][1]);
 		snprintf(line, sizeof(line), "%s = %s\n", changes[i][0], changes[i][1]);
 		CHECK_INT(raw_control(fd, request, -1, &reply), 0);
-		CHECK(settings_hold(line));
-		json_t *all = status();
+		CHECK(question_setting(fd, line));
+		json_t *all = question_ask(fd, "status");
 		const json_t *seen = json_object_get(json_object_get(all, "settings"), changes[i][0]);
 		CHECK(seen && strcmp(json_string_value(seen), changes[i][1]) == 0);
 		json_decref(all);
 		play_one(stream);
 	}
-	CHECK_INT(figure(NULL, "refused_frames"), 0);
-	CHECK_INT(figure(NULL, "engine_losses"), 0);
+	CHECK_INT(question_figure(fd, "status", "refused_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "engine_losses"), 0);
 }
 
 /* The next real frame is made with it: another method has other passes. */
@@ -101,23 +82,23 @@ static void test_next_frame_obeys(struct raw_stream *stream)
 	CHECK_INT(raw_control(fd, "set governor=off level=0 method=hold", -1, &reply), 0);
 	play_one(stream);
 	play_one(stream); /* the report of a frame is counted when the next begins */
-	const json_int_t before = figure("passes", "analyse");
+	const json_int_t before = question_figure(fd, "status", "passes.analyse");
 	play_one(stream);
-	CHECK_INT(figure("passes", "analyse"), before);
+	CHECK_INT(question_figure(fd, "status", "passes.analyse"), before);
 	CHECK_INT(raw_control(fd, "set method=grid", -1, &reply), 0);
 	play_one(stream);
 	play_one(stream);
-	CHECK(figure("passes", "analyse") > before);
+	CHECK(question_figure(fd, "status", "passes.analyse") > before);
 }
 
 static void test_level_of_the_governor(struct raw_stream *stream)
 {
 	CHECK_INT(raw_control(fd, "set governor=off level=4", -1, &reply), 0);
 	play_one(stream);
-	CHECK_INT(figure("governor", "level"), 4);
+	CHECK_INT(question_figure(fd, "status", "governor.level"), 4);
 	CHECK_INT(raw_control(fd, "set level=1", -1, &reply), 0);
 	play_one(stream);
-	CHECK_INT(figure("governor", "level"), 1);
+	CHECK_INT(question_figure(fd, "status", "governor.level"), 1);
 }
 
 static void test_refusals(void)
@@ -144,7 +125,7 @@ static void test_refusals(void)
 		CHECK_INT(raw_control(fd, wrong[i].request, -1, &reply), EINVAL);
 		CHECK(strstr(answer(), wrong[i].sentence) != NULL);
 	}
-	CHECK(settings_hold("cell = 24\n")); /* all or none */
+	CHECK(question_setting(fd, "cell = 24\n")); /* all or none */
 }
 
 /* Every row of the table is either taken with its own default, or refused with the reason. */

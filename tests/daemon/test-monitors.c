@@ -9,61 +9,35 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/picture-game.h"
 #include "tests/daemon/xorg.h"
 
 #define WIDTH XORG_WIDTH
 #define HEIGHT XORG_HEIGHT
-#define PATIENCE_FRAMES 800 /* 20 s */
 
 static struct fixture fixture;
 static struct xvfb server;
-static struct pursuit_stream *stream;
-
-/* No two neighbours alike. */
-static uint32_t color_at(uint32_t x, uint32_t y)
-{
-	return (x * 7 + y * 31) * 2654435761u >> 8;
-}
-
-static void submit_one(void)
-{
-	struct pursuit_frame *frame = pursuit_acquire(stream);
-	for (uint32_t y = 0; frame && y < HEIGHT; y++) {
-		uint32_t *color = (uint32_t *)(void *)(frame->color.data + y * frame->color.stride);
-		for (uint32_t x = 0; x < WIDTH; x++)
-			color[x] = 0xff000000u | color_at(x, y);
-		memset(frame->depth.data + y * frame->depth.stride, 0, (size_t)WIDTH * 4);
-		memset(frame->motion.data + y * frame->motion.stride, 0, (size_t)WIDTH * 8);
-	}
-	if (frame)
-		pursuit_submit(stream, frame);
-	sleep_ms(25);
-}
+static struct picture_game game = {.width = WIDTH, .height = HEIGHT, .color_at = picture_game_pattern};
 
 /* Plays until a place of the desktop shows this pixel of the picture. */
 static bool play_until_seen(uint32_t desktop_x, uint32_t desktop_y, uint32_t color)
 {
-	for (int i = 0; i < PATIENCE_FRAMES; i++) {
-		if (xvfb_pixel(&server, DefaultRootWindow(server.display), desktop_x, desktop_y) == color)
-			return true;
-		submit_one();
-	}
-	return false;
+	return picture_game_play_until(&game, &server, DefaultRootWindow(server.display), desktop_x, desktop_y, color,
+								   true);
 }
 
 /* All of the picture on the monitor at the right, to the bit. */
 static bool fills_the_right_monitor(void)
 {
 	static uint32_t pixels[2 * WIDTH * HEIGHT];
-	if (!play_until_seen(2 * WIDTH - 1, HEIGHT - 1, color_at(WIDTH - 1, HEIGHT - 1)) ||
+	if (!play_until_seen(2 * WIDTH - 1, HEIGHT - 1, picture_game_pattern(WIDTH - 1, HEIGHT - 1)) ||
 		!xvfb_capture(&server, DefaultRootWindow(server.display), 2 * WIDTH, HEIGHT, pixels))
 		return false;
 	uint32_t wrong = 0;
 	for (uint32_t y = 0; y < HEIGHT; y++)
 		for (uint32_t x = 0; x < WIDTH; x++)
-			wrong += pixels[y * 2 * WIDTH + WIDTH + x] != color_at(x, y);
+			wrong += pixels[y * 2 * WIDTH + WIDTH + x] != picture_game_pattern(x, y);
 	CHECK_INT(wrong, 0);
 	return true;
 }
@@ -84,20 +58,15 @@ static void start(const char *monitor, const char *refresh, const char *full)
 {
 	const char *const arguments[] = {"--present", "glfw,headless", "--monitor", monitor,
 									 "--refresh", refresh,         full,        NULL};
-	const struct pursuit_stream_params params = {.width = WIDTH,
-												 .height = HEIGHT,
-												 .depth_format = PURSUIT_DEPTH_FLOAT32,
-												 .motion_format = PURSUIT_MOTION_FLOAT32,
-												 .socket_path = fixture.socket};
 	unlink(fixture.log);
 	fixture_start(&fixture, arguments);
-	stream = pursuit_open(&params);
+	picture_game_open(&game, fixture.socket);
 }
 
 static void stop(void)
 {
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
-	pursuit_close(&stream);
+	pursuit_close(&game.stream);
 }
 
 static void test_chosen_monitor_at_120(void)
@@ -134,7 +103,7 @@ static void test_in_and_out_by_key(void)
 	CHECK(wait_for_rate("DUMMY1", 120.0));
 	xvfb_press(&server, window, "q");
 	CHECK_INT(fixture_join(&fixture), 0);
-	pursuit_close(&stream);
+	pursuit_close(&game.stream);
 	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
 }
 
@@ -146,7 +115,7 @@ static void test_unplugged(void)
 	CHECK(fills_the_right_monitor());
 	CHECK(xorg_unplug());
 	CHECK(wait_for_rate("DUMMY1", 0.0));
-	CHECK(play_until_seen(300, 200, color_at(300, 200)));
+	CHECK(play_until_seen(300, 200, picture_game_pattern(300, 200)));
 	CHECK(xorg_plug());
 	CHECK(wait_for_rate("DUMMY1", 120.0));
 	CHECK(fills_the_right_monitor());

@@ -18,6 +18,7 @@
 
 #include "daemon/configuration.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 static struct fixture fixture;
@@ -129,23 +130,9 @@ static void client_end(struct client *client)
 
 /* ---- what the daemon says ---- */
 
-static json_t *status(void)
-{
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	return json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-}
-
-static json_int_t figure(const char *object_name, const char *name)
-{
-	json_t *all = status(), *object = object_name ? json_object_get(all, object_name) : all;
-	const json_int_t value = json_integer_value(json_object_get(object, name));
-	json_decref(all);
-	return value;
-}
-
 static bool profile_is(const char *name)
 {
-	json_t *all = status();
+	json_t *all = question_ask(fd, "status");
 	const char *profile = json_string_value(json_object_get(all, "profile"));
 	const bool is = profile && strcmp(profile, name) == 0;
 	if (!is)
@@ -154,17 +141,11 @@ static bool profile_is(const char *name)
 	return is;
 }
 
-static bool setting_is(const char *line)
-{
-	CHECK_INT(raw_control(fd, "settings", -1, &reply), 0);
-	return strstr((const char *)reply.raw + sizeof(reply.control), line) != NULL;
-}
-
 /* Waits: a client that has ended is noticed a moment later. */
 static bool setting_comes(const char *line)
 {
 	for (int i = 0; i < 500; i++) {
-		if (setting_is(line))
+		if (question_setting(fd, line))
 			return true;
 		sleep_ms(20);
 	}
@@ -174,7 +155,7 @@ static bool setting_comes(const char *line)
 /* Shows the client of this executable. */
 static void focus(const char *application)
 {
-	json_t *all = status(), *streams = json_object_get(all, "streams");
+	json_t *all = question_ask(fd, "status"), *streams = json_object_get(all, "streams");
 	char request[64] = "set focus=nobody";
 	for (size_t i = 0; i < json_array_size(streams); i++) {
 		const json_t *stream = json_array_get(streams, i);
@@ -209,26 +190,27 @@ static void test_two_clients(void)
 {
 	struct client first, second;
 	client_start(&first, "first-game", "--client");
-	CHECK(profile_is("first-game") && setting_is("\nblur = off\n"));
+	CHECK(profile_is("first-game") && question_setting(fd, "\nblur = off\n"));
 	client_play(&first, 4);
 	client_start(&second, "second game", "--client");
-	CHECK(profile_is("second game") && setting_is("method = grid\n") && setting_is("\nblur = doubtful\n"));
+	CHECK(profile_is("second game") && question_setting(fd, "method = grid\n") &&
+		  question_setting(fd, "\nblur = doubtful\n"));
 	client_play(&second, 5);
 	focus("first-game");
-	CHECK(profile_is("first-game") && setting_is("method = hold\n"));
+	CHECK(profile_is("first-game") && question_setting(fd, "method = hold\n"));
 	client_play(&first, 3);
-	CHECK_INT(figure("passes", "analyse"), 5);
+	CHECK_INT(question_figure(fd, "status", "passes.analyse"), 5);
 	focus("second game");
 	client_play(&second, 2);
 	client_end(&second);
 	CHECK(setting_comes("method = hold\n") && profile_is("first-game"));
 	client_play(&first, 3);
 	/* one more where its last frame was shown again, when it was focused, before the first new one came */
-	const json_int_t analysed = figure("passes", "analyse");
+	const json_int_t analysed = question_figure(fd, "status", "passes.analyse");
 	CHECK(analysed == 7 || analysed == 8);
 	client_end(&first);
 	CHECK(setting_comes("\nblur = everywhere\n") && profile_is(""));
-	CHECK_INT(figure(NULL, "lost_real_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "lost_real_frames"), 0);
 }
 
 /* What was asked for goes before the profile, whichever is shown, until it is taken back. */
@@ -238,13 +220,13 @@ static void test_asked_goes_first(void)
 	client_start(&first, "first-game", "--client");
 	ask("set method=scatter");
 	client_start(&second, "second game", "--client");
-	CHECK(profile_is("second game") && setting_is("method = scatter\n"));
+	CHECK(profile_is("second game") && question_setting(fd, "method = scatter\n"));
 	focus("first-game");
-	CHECK(setting_is("method = scatter\n") && setting_is("\nblur = off\n"));
+	CHECK(question_setting(fd, "method = scatter\n") && question_setting(fd, "\nblur = off\n"));
 	ask("unset method");
-	CHECK(setting_is("method = hold\n"));
+	CHECK(question_setting(fd, "method = hold\n"));
 	focus("second game");
-	CHECK(setting_is("method = grid\n"));
+	CHECK(question_setting(fd, "method = grid\n"));
 	CHECK_INT(raw_control(fd, "unset method", -1, &reply), EINVAL);
 	client_play(&second, 2);
 	client_end(&first);
@@ -256,14 +238,14 @@ static void test_changed_profile(void)
 {
 	struct client first;
 	client_start(&first, "first-game", "--client");
-	CHECK(setting_is("\nblur = off\n"));
+	CHECK(question_setting(fd, "\nblur = off\n"));
 	write_config("blur = everywhere\n[application first-game]\nblur = doubtful\ncell = 32\n");
 	ask("reload");
-	CHECK(setting_is("\nblur = doubtful\n") && setting_is("\ncell = 32\n"));
+	CHECK(question_setting(fd, "\nblur = doubtful\n") && question_setting(fd, "\ncell = 32\n"));
 	client_play(&first, 2);
 	write_config("blur = everywhere\n");
 	ask("reload");
-	CHECK(profile_is("") && setting_is("\nblur = everywhere\n") && setting_is("\ncell = 8\n"));
+	CHECK(profile_is("") && question_setting(fd, "\nblur = everywhere\n") && question_setting(fd, "\ncell = 8\n"));
 	client_play(&first, 2);
 	client_end(&first);
 }
@@ -282,7 +264,7 @@ static void test_hostile_names(void)
 		ask("reload");
 		client_start(&client, fine[i], "--client");
 		snprintf(text, sizeof(text), "\ncell = %zu\n", 10 + i);
-		CHECK(setting_is(text));
+		CHECK(question_setting(fd, text));
 		client_play(&client, 1);
 		client_end(&client);
 	}
@@ -291,11 +273,11 @@ static void test_hostile_names(void)
 	ask("reload");
 	for (size_t i = 0; i < sizeof(none) / sizeof(none[0]); i++) {
 		client_start(&client, none[i], "--client");
-		CHECK(setting_is("\ncell = 8\n") && profile_is(""));
+		CHECK(question_setting(fd, "\ncell = 8\n") && profile_is(""));
 		client_end(&client);
 	}
 	client_start(&client, "first-game", "--client-gone");
-	CHECK(setting_is("\ncell = 20\n")); /* updated while it runs */
+	CHECK(question_setting(fd, "\ncell = 20\n")); /* updated while it runs */
 	client_end(&client);
 }
 

@@ -8,13 +8,13 @@
  */
 
 #include <fcntl.h>
-#include <jansson.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 static struct fixture fixture;
@@ -42,17 +42,11 @@ static void play(int frames)
 	}
 }
 
-static bool setting_is(const char *line)
-{
-	CHECK_INT(raw_control(fd, "settings", -1, &reply), 0);
-	return strstr((const char *)reply.raw + sizeof(reply.control), line) != NULL;
-}
-
 /* Frames go on meanwhile. */
 static bool setting_comes(const char *line)
 {
 	for (int i = 0; i < 1000; i++) {
-		if (setting_is(line))
+		if (question_setting(fd, line))
 			return true;
 		play(1);
 	}
@@ -103,9 +97,9 @@ static void test_half_written(void)
 	snprintf(want, sizeof(want), "%s:2: \"blur-le\" is not of the form name = value; the settings stay as they are",
 			 config);
 	CHECK(fixture_logged(&fixture, want));
-	CHECK(setting_is("\ncell = 21\n"));
+	CHECK(question_setting(fd, "\ncell = 21\n"));
 	write_file(config, "cell = 41\nblur-level = 3\n");
-	CHECK(setting_comes("\ncell = 41\n") && setting_is("\nblur-level = 3\n"));
+	CHECK(setting_comes("\ncell = 41\n") && question_setting(fd, "\nblur-level = 3\n"));
 }
 
 /* A file that is open for writing is not read, even if it is empty for a while. */
@@ -113,10 +107,10 @@ static void test_slow_writer(void)
 {
 	FILE *file = fopen(config, "w");
 	pass_time();
-	CHECK(setting_is("\ncell = 41\n"));
+	CHECK(question_setting(fd, "\ncell = 41\n"));
 	CHECK(fputs("cell = 42\n", file) >= 0 && fflush(file) == 0);
 	pass_time();
-	CHECK(setting_is("\ncell = 41\n"));
+	CHECK(question_setting(fd, "\ncell = 41\n"));
 	CHECK(fclose(file) == 0);
 	CHECK(setting_comes("\ncell = 42\n"));
 }
@@ -125,7 +119,7 @@ static void test_deleted(void)
 {
 	CHECK(unlink(config) == 0);
 	CHECK(fixture_logged(&fixture, "No such file or directory; the settings stay as they are"));
-	CHECK(setting_is("\ncell = 42\n"));
+	CHECK(question_setting(fd, "\ncell = 42\n"));
 	write_file(config, "cell = 43\n");
 	CHECK(setting_comes("\ncell = 43\n"));
 }
@@ -193,10 +187,10 @@ static void test_asked_stays(void)
 	CHECK_INT(raw_control(fd, "set cell=50", -1, &reply), 0);
 	write_file(config, "cell = 12\nblur = off\n");
 	CHECK(setting_comes("\nblur = off\n"));
-	CHECK(setting_is("\ncell = 50\n"));
+	CHECK(question_setting(fd, "\ncell = 50\n"));
 	CHECK(fixture_logged(&fixture, "cell is 12 now in the configuration; it stays 50, as `pursuit set` asked for"));
 	CHECK_INT(raw_control(fd, "unset cell", -1, &reply), 0);
-	CHECK(setting_is("\ncell = 12\n"));
+	CHECK(question_setting(fd, "\ncell = 12\n"));
 }
 
 static void test_signal(void)
@@ -207,22 +201,13 @@ static void test_signal(void)
 	CHECK(readings() > before);
 }
 
-static json_int_t figure(const char *name)
-{
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	json_t *all = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-	const json_int_t value = json_integer_value(json_object_get(all, name));
-	json_decref(all);
-	return value;
-}
-
 static bool cell_becomes(int cell)
 {
 	char line[32];
 	snprintf(line, sizeof(line), "\ncell = %d\n", cell);
-	for (int i = 0; i < 500 && !setting_is(line); i++)
+	for (int i = 0; i < 500 && !question_setting(fd, line); i++)
 		sleep_ms(20);
-	return setting_is(line);
+	return question_setting(fd, line);
 }
 
 /* A file that need not be there, and comes later. */
@@ -235,7 +220,7 @@ static void test_missing(void)
 	CHECK_INT(fixture_join(&fixture), 2);
 	fixture_start(&fixture, right);
 	fd = raw_greet(fixture.socket);
-	CHECK(setting_is("\ncell = 8\n"));
+	CHECK(question_setting(fd, "\ncell = 8\n"));
 	write_file(other, "cell = 33\n");
 	CHECK(cell_becomes(33));
 	close(fd);
@@ -312,8 +297,8 @@ int main(int argc, char **argv)
 	RUN(test_many_links);
 	RUN(test_asked_stays);
 	RUN(test_signal);
-	CHECK_INT(figure("lost_real_frames"), 0);
-	CHECK_INT(figure("refused_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "lost_real_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "refused_frames"), 0);
 	raw_stream_finish(&stream);
 	close(fd);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);

@@ -10,7 +10,6 @@
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
-#include <jansson.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/ptrace.h>
@@ -20,6 +19,7 @@
 #include <unistd.h>
 
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 #define INTERVAL_US "600000"
@@ -206,16 +206,6 @@ static void write_config(const char *text)
 		fclose(file);
 }
 
-static json_int_t figure(int fd, const char *name)
-{
-	static struct raw_reply reply;
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	json_t *object = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-	const json_int_t value = json_integer_value(json_object_get(object, name));
-	json_decref(object);
-	return value;
-}
-
 static void play(struct raw_stream *stream, int frames)
 {
 	struct pursuit_feedback report;
@@ -258,8 +248,8 @@ static void test_reload(void)
 	kill(fixture.pid, SIGHUP);
 	CHECK(fixture_logged(&fixture, "config:2: nonsense: there is no such setting; the settings stay as they are"));
 	play(&stream, 3);
-	CHECK_INT(figure(fd, "lost_real_frames"), 0);
-	CHECK_INT(figure(fd, "refused_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "lost_real_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "refused_frames"), 0);
 	raw_stream_finish(&stream);
 	close(fd);
 	close(second);

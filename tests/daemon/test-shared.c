@@ -5,14 +5,14 @@
  * Pictures that stay in GL all the way to the window: to the bit what is on the screen when they go through CPU memory,
  * nothing is read back, and what the CPU draws or looks at is right all the same.
  */
-#include <jansson.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/picture-game.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 #include "tests/daemon/xvfb.h"
 
@@ -20,54 +20,23 @@
 #define HEIGHT 151u
 #define LARGE_WIDTH 500u
 #define LARGE_HEIGHT 400u
-#define PATIENCE_FRAMES 800 /* 20 s */
 
 static struct fixture fixture;
 static struct xvfb xvfb;
-static struct pursuit_stream *stream;
+static struct picture_game game = {.width = WIDTH, .height = HEIGHT, .color_at = picture_game_pattern};
 static Window window;
-
-/* No two neighbours alike. */
-static uint32_t color_at(uint32_t x, uint32_t y)
-{
-	return (x * 7 + y * 31) * 2654435761u >> 8;
-}
-
-static void submit_one(void)
-{
-	struct pursuit_frame *frame = pursuit_acquire(stream);
-	for (uint32_t y = 0; frame && y < HEIGHT; y++) {
-		uint32_t *color = (uint32_t *)(void *)(frame->color.data + y * frame->color.stride);
-		for (uint32_t x = 0; x < WIDTH; x++)
-			color[x] = 0xff000000u | color_at(x, y);
-		memset(frame->depth.data + y * frame->depth.stride, 0, (size_t)WIDTH * 4);
-		memset(frame->motion.data + y * frame->motion.stride, 0, (size_t)WIDTH * 8);
-	}
-	if (frame)
-		pursuit_submit(stream, frame);
-	sleep_ms(25);
-}
 
 static bool play_until_pixel(uint32_t x, uint32_t y, uint32_t color, bool equal)
 {
-	for (int i = 0; i < PATIENCE_FRAMES; i++) {
-		if ((xvfb_pixel(&xvfb, window, x, y) == color) == equal)
-			return true;
-		submit_one();
-	}
-	return false;
+	return picture_game_play_until(&game, &xvfb, window, x, y, color, equal);
 }
 
 static json_int_t count_runs(const char *pass)
 {
-	static struct raw_reply reply;
+	char path[64];
 	const int fd = raw_greet(fixture.socket);
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	json_t *status = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-	const json_t *runs = json_object_get(json_object_get(status, "passes"), pass);
-	CHECK(json_is_integer(runs));
-	const json_int_t count = json_integer_value(runs);
-	json_decref(status);
+	snprintf(path, sizeof(path), "passes.%s", pass);
+	const json_int_t count = question_figure(fd, "status", path);
 	close(fd);
 	return count;
 }
@@ -75,22 +44,17 @@ static json_int_t count_runs(const char *pass)
 static void start(const char *context, const char *more)
 {
 	const char *const arguments[] = {"--present", "glfw", "--context", context, more, NULL};
-	const struct pursuit_stream_params params = {.width = WIDTH,
-												 .height = HEIGHT,
-												 .depth_format = PURSUIT_DEPTH_FLOAT32,
-												 .motion_format = PURSUIT_MOTION_FLOAT32,
-												 .socket_path = fixture.socket};
 	fixture_start(&fixture, arguments);
-	stream = pursuit_open(&params);
+	picture_game_open(&game, fixture.socket);
 	window = xvfb_find(&xvfb, "Pursuit");
 	CHECK(window != 0);
-	CHECK(play_until_pixel(WIDTH - 1, HEIGHT - 1, color_at(WIDTH - 1, HEIGHT - 1), true));
+	CHECK(play_until_pixel(WIDTH - 1, HEIGHT - 1, picture_game_pattern(WIDTH - 1, HEIGHT - 1), true));
 }
 
 static void stop(void)
 {
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
-	pursuit_close(&stream);
+	pursuit_close(&game.stream);
 }
 
 /* What is on the screen: the picture as it is, with the help over it, and enlarged. */
@@ -100,7 +64,7 @@ struct screens {
 
 static void take_screens(struct screens *screens)
 {
-	const uint32_t middle = color_at(WIDTH / 2, HEIGHT / 2);
+	const uint32_t middle = picture_game_pattern(WIDTH / 2, HEIGHT / 2);
 	CHECK(xvfb_capture(&xvfb, window, WIDTH, HEIGHT, screens->plain));
 	xvfb_press(&xvfb, window, "h");
 	CHECK(play_until_pixel(WIDTH / 2, HEIGHT / 2, middle, false));
@@ -111,7 +75,7 @@ static void take_screens(struct screens *screens)
 	XFlush(xvfb.display);
 	CHECK(play_until_pixel(LARGE_WIDTH / 2, LARGE_HEIGHT - 40, 0, false));
 	for (int i = 0; i < 8; i++)
-		submit_one();
+		picture_game_play(&game);
 	CHECK(xvfb_capture(&xvfb, window, LARGE_WIDTH, LARGE_HEIGHT, screens->large));
 }
 
@@ -131,7 +95,7 @@ static void test_same_screen(void)
 	CHECK_INT(count_runs("copy"), 0);
 	stop();
 	for (uint32_t i = 0; i < WIDTH * HEIGHT; i++)
-		CHECK_INT(shared.plain[i], color_at(i % WIDTH, i / WIDTH));
+		CHECK_INT(shared.plain[i], picture_game_pattern(i % WIDTH, i / WIDTH));
 	CHECK(memcmp(shared.plain, through_memory.plain, sizeof(shared.plain)) == 0);
 	CHECK(memcmp(shared.help, through_memory.help, sizeof(shared.help)) == 0);
 	CHECK(memcmp(shared.large, through_memory.large, sizeof(shared.large)) == 0);
@@ -167,18 +131,18 @@ static void test_lost_server(void)
 	CHECK(fixture_logged(&fixture, "pictures stay in GL"));
 	xvfb_stop(&xvfb);
 	CHECK(fixture_logged(&fixture, "headless presents now"));
-	while (pursuit_poll_feedback(stream, &report))
+	while (pursuit_poll_feedback(game.stream, &report))
 		continue;
-	for (int i = 0; i < PATIENCE_FRAMES && shown < 20; i++) {
-		submit_one();
-		while (pursuit_poll_feedback(stream, &report))
+	for (int i = 0; i < PICTURE_GAME_PATIENCE && shown < 20; i++) {
+		picture_game_play(&game);
+		while (pursuit_poll_feedback(game.stream, &report))
 			shown += report.shown == PURSUIT_SHOWN;
 	}
 	CHECK(shown >= 20);
 	const json_int_t copies = count_runs("copy");
 	CHECK(xvfb_start(&xvfb));
 	window = xvfb_find(&xvfb, "Pursuit");
-	CHECK(play_until_pixel(WIDTH - 1, HEIGHT - 1, color_at(WIDTH - 1, HEIGHT - 1), true));
+	CHECK(play_until_pixel(WIDTH - 1, HEIGHT - 1, picture_game_pattern(WIDTH - 1, HEIGHT - 1), true));
 	CHECK(count_runs("copy") > copies);
 	stop();
 }

@@ -3,25 +3,22 @@
 
 /* The GLFW presenter under Xvfb: what the engine made is what is on the screen, keys work, nothing hangs. */
 
-#include <jansson.h>
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/picture-game.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 #include "tests/daemon/xvfb.h"
 
 #define WIDTH 160u
 #define HEIGHT 120u
-#define PATIENCE_FRAMES 800 /* 20 s */
 
 static struct fixture fixture;
 static struct xvfb xvfb;
-static struct pursuit_stream *stream;
 static Window window;
-
 static uint32_t corner; /* of the picture: what is the same as before is not drawn again */
 
 /* Four quarters of one colour each, and a white row on top. */
@@ -32,27 +29,13 @@ static uint32_t color_at(uint32_t x, uint32_t y)
 	return x < WIDTH / 2 ? (y < HEIGHT / 2 ? 0xc03020 : 0x20a040) : (y < HEIGHT / 2 ? 0x3050d0 : 0xd0c040);
 }
 
-static void submit_one(void)
-{
-	struct pursuit_frame *frame = pursuit_acquire(stream);
-	if (frame) {
-		for (uint32_t y = 0; y < HEIGHT; y++) {
-			uint32_t *color = (uint32_t *)(void *)(frame->color.data + y * frame->color.stride);
-			for (uint32_t x = 0; x < WIDTH; x++)
-				color[x] = 0xff000000u | color_at(x, y);
-			memset(frame->depth.data + y * frame->depth.stride, 0, (size_t)WIDTH * 4);
-			memset(frame->motion.data + y * frame->motion.stride, 0, (size_t)WIDTH * 8);
-		}
-		pursuit_submit(stream, frame);
-	}
-	sleep_ms(25);
-}
+static struct picture_game game = {.width = WIDTH, .height = HEIGHT, .color_at = color_at};
 
 static uint64_t count_shown(void)
 {
 	struct pursuit_feedback_report report;
 	uint64_t shown = 0;
-	while (pursuit_poll_feedback(stream, &report))
+	while (pursuit_poll_feedback(game.stream, &report))
 		shown += report.shown == PURSUIT_SHOWN;
 	return shown;
 }
@@ -62,8 +45,8 @@ static bool play_until_shown(uint64_t frames)
 {
 	uint64_t shown = 0;
 	count_shown();
-	for (int i = 0; i < PATIENCE_FRAMES && shown < frames; i++) {
-		submit_one();
+	for (int i = 0; i < PICTURE_GAME_PATIENCE && shown < frames; i++) {
+		picture_game_play(&game);
 		shown += count_shown();
 	}
 	return shown >= frames;
@@ -72,24 +55,17 @@ static bool play_until_shown(uint64_t frames)
 /* Plays until a pixel of the window has this colour, or another one. */
 static bool play_until_pixel(uint32_t x, uint32_t y, uint32_t color, bool equal)
 {
-	for (int i = 0; i < PATIENCE_FRAMES; i++) {
-		if ((xvfb_pixel(&xvfb, window, x, y) == color) == equal)
-			return true;
-		submit_one();
-	}
-	return false;
+	return picture_game_play_until(&game, &xvfb, window, x, y, color, equal);
 }
 
 /* Flips whose time came from there; NULL: from anywhere but the clock alone, so that their picture was drawn. */
 static json_int_t count_dated(const char *wanted)
 {
-	static struct raw_reply reply;
 	const int fd = raw_greet(fixture.socket);
 	const char *source;
 	json_t *count;
 	json_int_t drawn = 0;
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	json_t *status = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
+	json_t *status = question_ask(fd, "status");
 	json_object_foreach(json_object_get(status, "flip_time_sources"), source, count)
 	{
 		if (wanted ? strcmp(source, wanted) == 0 : strcmp(source, "timer") != 0)
@@ -114,14 +90,8 @@ static bool play_until_undrawn(void)
 static void start(const char *list)
 {
 	const char *const arguments[] = {"--present", list, NULL};
-	const struct pursuit_stream_params params = {.width = WIDTH,
-												 .height = HEIGHT,
-												 .depth_format = PURSUIT_DEPTH_FLOAT32,
-												 .motion_format = PURSUIT_MOTION_FLOAT32,
-												 .socket_path = fixture.socket,
-												 .name = "test game"};
 	fixture_start(&fixture, arguments);
-	stream = pursuit_open(&params);
+	picture_game_open(&game, fixture.socket);
 	window = xvfb_find(&xvfb, "Pursuit");
 	CHECK(window != 0);
 	CHECK(play_until_shown(1));
@@ -130,7 +100,7 @@ static void start(const char *list)
 static void stop(int number)
 {
 	CHECK_INT(number ? fixture_stop(&fixture, number) : fixture_join(&fixture), 0);
-	pursuit_close(&stream);
+	pursuit_close(&game.stream);
 }
 
 /* The window takes the size of the picture and shows each pixel of it, the right way up. */
@@ -138,8 +108,8 @@ static void test_shows_the_picture(void)
 {
 	unsigned width = 0, height = 0;
 	start("glfw");
-	for (int i = 0; i < PATIENCE_FRAMES && (width != WIDTH || height != HEIGHT); i++) {
-		submit_one();
+	for (int i = 0; i < PICTURE_GAME_PATIENCE && (width != WIDTH || height != HEIGHT); i++) {
+		picture_game_play(&game);
 		xvfb_get_size(&xvfb, window, &width, &height);
 	}
 	CHECK_INT(width, WIDTH);
@@ -149,9 +119,9 @@ static void test_shows_the_picture(void)
 		for (uint32_t x = 3; x < WIDTH; x += 11)
 			CHECK_INT(xvfb_pixel(&xvfb, window, x, y), color_at(x, y));
 	/* There is no display whose vblanks anybody could know. The first swaps may come back too late to date a flip. */
-	for (int i = 0; i < PATIENCE_FRAMES && count_dated("estimated") == 0; i++) {
+	for (int i = 0; i < PICTURE_GAME_PATIENCE && count_dated("estimated") == 0; i++) {
 		corner = i % 2;
-		submit_one();
+		picture_game_play(&game);
 	}
 	corner = 0;
 	bool estimated = false; /* on a busy machine first by the clock alone */
@@ -193,7 +163,7 @@ static void test_keys(void)
 /* Until a pixel of the window is black, or not. */
 static bool wait_for_black(uint32_t x, uint32_t y, bool black)
 {
-	for (int i = 0; i < PATIENCE_FRAMES; i++) {
+	for (int i = 0; i < PICTURE_GAME_PATIENCE; i++) {
 		if ((xvfb_pixel(&xvfb, window, x, y) == 0) == black)
 			return true;
 		sleep_ms(25);
@@ -242,12 +212,12 @@ static void test_server_that_hangs(void)
 	kill(xvfb.pid, SIGSTOP);
 	for (int i = 0; i < 20; i++) {
 		corner = i < 15 ? 0x10 : 0x20;
-		submit_one();
+		picture_game_play(&game);
 	}
 	sleep_ms(500);
 	kill(xvfb.pid, SIGCONT);
 	bool shown = false;
-	for (int i = 0; i < PATIENCE_FRAMES && !shown; i++) {
+	for (int i = 0; i < PICTURE_GAME_PATIENCE && !shown; i++) {
 		shown = xvfb_pixel(&xvfb, window, WIDTH - 1, 0) == 0xffffff - 0x20;
 		sleep_ms(25);
 	}

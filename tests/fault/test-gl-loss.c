@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 #define PIXELS ((size_t)RAW_WIDTH * RAW_HEIGHT)
@@ -24,23 +25,9 @@ static char lose_path[96], memory_path[96], video_path[96];
 static struct raw_reply reply;
 static int fd;
 
-static json_t *ask_status(void)
-{
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
-	return json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-}
-
-static json_int_t figure(const char *name)
-{
-	json_t *status = ask_status();
-	const json_int_t value = json_integer_value(json_object_get(status, name));
-	json_decref(status);
-	return value;
-}
-
 static bool draws_in(const char *context)
 {
-	json_t *status = ask_status();
+	json_t *status = question_ask(fd, "status");
 	const bool same = strcmp(json_string_value(json_object_get(status, "context")), context) == 0;
 	json_decref(status);
 	return same;
@@ -118,8 +105,8 @@ static void check_video(void)
 
 static void stop(struct raw_stream *stream)
 {
-	CHECK_INT(figure("lost_real_frames"), 0);
-	CHECK_INT(figure("refused_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "lost_real_frames"), 0);
+	CHECK_INT(question_figure(fd, "status", "refused_frames"), 0);
 	raw_stream_finish(stream);
 	close(fd);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
@@ -137,7 +124,7 @@ static void test_context_lost(void)
 		make_file(lose_path);
 		play(&stream, 1); /* GL is asked, and tells, with this frame or before */
 		CHECK(access(lose_path, F_OK) != 0);
-		CHECK_INT(figure("engine_losses"), i + 1);
+		CHECK_INT(question_figure(fd, "status", "engine_losses"), i + 1);
 		play_until_in(&stream, "egl-surfaceless");
 	}
 	CHECK(fixture_logged(&fixture, "the engine is lost, to be made anew in 100 ms"));

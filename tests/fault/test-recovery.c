@@ -22,6 +22,7 @@
 
 #include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 #include "tests/fault/game.h"
 
@@ -177,17 +178,12 @@ static bool kill_after(unsigned steps)
 	return true;
 }
 
-static json_int_t status_figure(const char *name, bool array)
+static json_int_t figure(const char *name)
 {
-	static struct raw_reply reply;
 	const int fd = raw_greet(fixture.socket);
-	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
+	const json_int_t value = question_figure(fd, "status", name);
 	close(fd);
-	json_t *object = json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-	const json_t *value = json_object_get(object, name);
-	const json_int_t number = array ? (json_int_t)json_array_size(value) : json_integer_value(value);
-	json_decref(object);
-	return number;
+	return value;
 }
 
 /* Only the neighbour's stream is left. */
@@ -195,7 +191,7 @@ static void check_streams_gone(void)
 {
 	json_int_t streams = -1;
 	for (int waited = 0; waited < 10000 && streams != 1; waited += 10) {
-		streams = status_figure("streams", true);
+		streams = figure("streams");
 		sleep_ms(10);
 	}
 	CHECK_INT(streams, 1);
@@ -239,16 +235,16 @@ static void test_client_stopped(void)
 	start_neighbour();
 	wait_for_reports(3);
 	const pid_t child = fork_client(false);
-	for (int waited = 0; waited < 10000 && status_figure("streams", true) != 2; waited += 10)
+	for (int waited = 0; waited < 10000 && figure("streams") != 2; waited += 10)
 		sleep_ms(10);
 	kill(child, SIGSTOP);
 	wait_for_reports(60);
-	CHECK_INT(status_figure("streams", true), 2);
-	const json_int_t received = status_figure("received_frames", false);
+	CHECK_INT(figure("streams"), 2);
+	const json_int_t received = figure("received_frames");
 	kill(child, SIGCONT);
 	wait_for_reports(60);
-	CHECK(status_figure("received_frames", false) > received);
-	CHECK_INT(status_figure("streams", true), 2);
+	CHECK(figure("received_frames") > received);
+	CHECK_INT(figure("streams"), 2);
 	kill(child, SIGKILL);
 	waitpid(child, NULL, 0);
 	check_streams_gone();

@@ -15,6 +15,7 @@
 
 #include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 #include "tests/fault/game.h"
 
@@ -44,24 +45,12 @@ static uint64_t play_until_shown(struct pursuit_stream *stream, unsigned wanted)
 	return now_ns() - start;
 }
 
-static struct raw_reply reply;
-
-/* What it is answered, as JSON if it is. */
-static json_t *ask(const char *request)
-{
-	const int fd = raw_greet(fixture.socket);
-	CHECK_INT(raw_control(fd, request, -1, &reply), 0);
-	close(fd);
-	return json_loads((const char *)reply.raw + sizeof(reply.control), 0, NULL);
-}
-
 static json_int_t figure(const char *name)
 {
-	json_t *object = ask("status");
-	const json_t *value = json_object_get(object, name);
-	const json_int_t number = json_is_array(value) ? (json_int_t)json_array_size(value) : json_integer_value(value);
-	json_decref(object);
-	return number;
+	const int fd = raw_greet(fixture.socket);
+	const json_int_t value = question_figure(fd, "status", name);
+	close(fd);
+	return value;
 }
 
 /* The game renders on as if nothing were, is attached all the while, and is shown again soon. */
@@ -96,7 +85,8 @@ static void test_daemon_suspended(void)
 
 static void focus(pid_t pid)
 {
-	json_t *status = ask("status"), *streams = json_object_get(status, "streams");
+	const int fd = raw_greet(fixture.socket);
+	json_t *status = question_ask(fd, "status"), *streams = json_object_get(status, "streams");
 	char request[64] = "";
 	for (size_t i = 0; i < json_array_size(streams); i++) {
 		const json_t *stream = json_array_get(streams, i);
@@ -105,7 +95,8 @@ static void focus(pid_t pid)
 					 (int)json_integer_value(json_object_get(stream, "client_id")));
 	}
 	json_decref(status);
-	json_decref(ask(request));
+	json_decref(question_ask(fd, request));
+	close(fd);
 }
 
 static pid_t start_client(void)

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/* What a daemon answers to a control request, over a connection that was greeted (raw_greet()). */
+#ifndef PURSUIT_TESTS_QUESTION_H
+#define PURSUIT_TESTS_QUESTION_H
+
+#include <jansson.h>
+#include <stdbool.h>
+
+/* The whole answer, the caller's; NULL if it is no JSON. */
+json_t *question_ask(int connection, const char *request);
+/* A number of the answer, or the length of an array: "streams", "passes.copy". A check fails if there is none. */
+json_int_t question_figure(int connection, const char *request, const char *path);
+/* Do the settings hold this text? "\ncell = 8\n" */
+bool question_setting(int connection, const char *text);
+
+#endif
