@@ -94,30 +94,18 @@ void exact_finish(struct exact *exact)
 	*exact = (struct exact){0};
 }
 
-static void sample(const struct exact_picture *picture, double x, double y, double out[3])
+static void sample(const void *data, double x, double y, double out[3])
 {
+	const struct exact_picture *picture = data;
 	const double i = floor(x - 0.5), j = floor(y - 0.5);
 	const double fx = x - 0.5 - i, fy = y - 0.5 - j;
 	const double wx[2] = {1.0 - fx, fx}, wy[2] = {1.0 - fy, fy};
 	sum_texels(picture, (long)i, (long)j, wx, wy, 2, out);
 }
 
-static void render_warped(const struct exact *exact, const struct exact_picture *picture, double phase, double *codes)
+static void put(void *data, size_t pixel, const double codes[3])
 {
-	const struct reference *reference = exact->reference;
-	const size_t count = (size_t)reference->width * reference->height;
-	struct reference_hit *hits = reference_alloc(count, sizeof(*hits));
-	reference_warp(&reference->grid, reference->width, reference->height, phase, hits);
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t *v = reference->grid.triangles[hits[i].triangle].v;
-		const double t = reference_tear(&reference->grid, v, phase, reference->blur);
-		double x[3], low[3];
-		sample(picture, hits[i].x, hits[i].y, x);
-		sample(&exact->low, hits[i].x, hits[i].y, low);
-		for (int c = 0; c < 3; c++)
-			codes[i * 3 + (size_t)c] = (1.0 - t) * x[c] + t * low[c];
-	}
-	free(hits);
+	memcpy((double *)data + pixel * 3, codes, 3 * sizeof(*codes));
 }
 
 void exact_render(const struct exact *exact, const struct engine_request *request, double *codes)
@@ -131,5 +119,5 @@ void exact_render(const struct exact *exact, const struct engine_request *reques
 	} else if (request->show == ENGINE_SHOW_REAL && phase == 0.0)
 		memcpy(codes, picture->data, (size_t)picture->width * picture->height * 3 * sizeof(double));
 	else
-		render_warped(exact, picture, phase, codes);
+		reference_mix(reference, phase, &(struct reference_layers){picture, &exact->low, sample, put, codes});
 }

@@ -138,8 +138,7 @@ static void render_still(const struct reference *reference, const struct referen
 	}
 }
 
-static void render_warped(const struct reference *reference, const struct reference_picture *picture, double phase,
-						  uint8_t *pixels)
+void reference_mix(const struct reference *reference, double phase, const struct reference_layers *layers)
 {
 	const size_t count = (size_t)reference->width * reference->height;
 	struct reference_hit *hits = reference_alloc(count, sizeof(*hits));
@@ -148,13 +147,37 @@ static void render_warped(const struct reference *reference, const struct refere
 		const uint32_t *v = reference->grid.triangles[hits[i].triangle].v;
 		const double t = reference_tear(&reference->grid, v, phase, reference->blur);
 		double x[3], low[3];
-		reference_sample(picture, hits[i].x, hits[i].y, x);
-		reference_sample(&reference->low, hits[i].x, hits[i].y, low);
+		layers->sample(layers->picture, hits[i].x, hits[i].y, x);
+		layers->sample(layers->low, hits[i].x, hits[i].y, low);
 		for (int c = 0; c < 3; c++)
 			x[c] = (1.0 - t) * x[c] + t * low[c];
-		compose(reference, x, i, &pixels[i * 4]);
+		layers->put(layers->data, i, x);
 	}
 	free(hits);
+}
+
+static void sample_steps(const void *picture, double x, double y, double out[3])
+{
+	reference_sample(picture, x, y, out);
+}
+
+struct composition {
+	const struct reference *reference;
+	uint8_t *pixels;
+};
+
+static void put_composed(void *data, size_t pixel, const double steps[3])
+{
+	const struct composition *composition = data;
+	compose(composition->reference, steps, pixel, &composition->pixels[pixel * 4]);
+}
+
+static void render_warped(const struct reference *reference, const struct reference_picture *picture, double phase,
+						  uint8_t *pixels)
+{
+	struct composition composition = {reference, pixels};
+	const struct reference_layers layers = {picture, &reference->low, sample_steps, put_composed, &composition};
+	reference_mix(reference, phase, &layers);
 }
 
 void reference_render(const struct reference *reference, const struct engine_request *request, uint8_t *pixels)

@@ -189,6 +189,16 @@ double reference_phase(const struct engine_request *request);
 /* Displayed picture, BGRA8, packed, alpha 255. */
 void reference_render(const struct reference *reference, const struct engine_request *request, uint8_t *pixels);
 
+/* A displayed picture's two sources, in any form, and what becomes of each of its pixels. */
+struct reference_layers {
+	const void *picture, *low; /* what is displaced, and L */
+	void (*sample)(const void *layer, double x, double y, double out[3]);
+	void (*put)(void *data, size_t pixel, const double mixed[3]);
+	void *data;
+};
+/* The warp [3], and L where it tears [5]. */
+void reference_mix(const struct reference *reference, double phase, const struct reference_layers *layers);
+
 /* calloc that aborts. */
 void *reference_alloc(size_t count, size_t size);
 
