@@ -7,8 +7,8 @@
  */
 #include "tests/test.h"
 
+#include "cases.h"
 #include "daemon/engine/gl/executor_gl.h"
-#include "fixture.h"
 #include "on-gpu.h"
 
 static struct engine *engine;
@@ -35,69 +35,22 @@ static void check_spec(const struct fixture_spec *spec, const struct plan_params
 
 static void test_sizes_and_fields(void)
 {
-	static const uint32_t sizes[][2] = {{1, 1},  {1, 7},   {7, 1},    {2, 2},  {8, 8},   {9, 9},
-										{16, 8}, {17, 25}, {333, 77}, {2, 99}, {129, 65}};
-	const struct plan_params params = {.last_phase = 0.5f};
-	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++)
-		for (int field = 0; field < FIELD_COUNT; field++) {
-			struct fixture_spec spec = {sizes[i][0], sizes[i][1], .motion_format = PURSUIT_FORMAT_RG32F,
-										.depth_format = PURSUIT_FORMAT_DEPTH32F};
-			check_spec(&spec, &params, (enum fixture_field)field, 1 + (uint32_t)i);
-			spec.motion_format = PURSUIT_FORMAT_RG16F;
-			check_spec(&spec, &params, (enum fixture_field)field, 2 + (uint32_t)i);
-		}
+	cases_of_sizes(check_spec);
 }
 
 static void test_cells(void)
 {
-	static const uint32_t cells[] = {4, 5, 8, 13, 16, 31, 63, 64};
-	const struct fixture_spec spec = {203, 131, .motion_format = PURSUIT_FORMAT_RG16F,
-									  .depth_format = PURSUIT_FORMAT_DEPTH24};
-	for (size_t i = 0; i < sizeof(cells) / sizeof(cells[0]); i++)
-		for (uint32_t threshold = 0; threshold <= 63; threshold += 21)
-			for (int field = FIELD_SMOOTH; field <= FIELD_SPARSE; field++) {
-				const struct plan_params params = {
-					.cell = cells[i], .threshold_quarter = threshold, .last_phase = 2.0f / 3};
-				check_spec(&spec, &params, (enum fixture_field)field, 50 + threshold);
-			}
+	cases_of_cells(check_spec);
 }
 
 static void test_depths(void)
 {
-	static const uint32_t formats[] = {0, PURSUIT_FORMAT_DEPTH16, PURSUIT_FORMAT_DEPTH24, PURSUIT_FORMAT_DEPTH32F};
-	static const struct {
-		uint32_t kind;
-		float near_distance, far_distance;
-	} kinds[] = {{PURSUIT_DEPTH_DEVICE, 0, 0},           {PURSUIT_DEPTH_DEVICE_REVERSED, 0, 0},
-				 {PURSUIT_DEPTH_LINEAR, 0.125f, 0.875f}, {PURSUIT_DEPTH_LINEAR, 0.125f, INFINITY},
-				 {PURSUIT_DEPTH_LINEAR, 0, 0},           {PURSUIT_DEPTH_LINEAR, 0.5f, 0}};
-	const struct plan_params params = {.last_phase = 0.5f};
-	for (size_t f = 0; f < 4; f++)
-		for (size_t k = 0; k < sizeof(kinds) / sizeof(kinds[0]); k++)
-			for (int field = FIELD_LAYERS; field <= FIELD_BITS; field++) {
-				const struct fixture_spec spec = {93,
-												  61,
-												  .motion_format = PURSUIT_FORMAT_RG32F,
-												  .depth_format = formats[f],
-												  .depth_kind = kinds[k].kind,
-												  .near_distance = kinds[k].near_distance,
-												  .far_distance = kinds[k].far_distance};
-				check_spec(&spec, &params, (enum fixture_field)field, 9);
-			}
+	cases_of_depths(check_spec);
 }
 
-static void test_geometry_of_another_size(void)
+static void test_planes_of_other_sizes(void)
 {
-	static const uint32_t others[][4] = {{160, 90, 80, 45},  {161, 91, 80, 45}, {80, 45, 160, 90},
-										 {100, 60, 100, 30}, {97, 61, 1, 1},    {97, 61, 31, 97}};
-	const struct plan_params params = {.last_phase = 0.5f};
-	for (size_t i = 0; i < sizeof(others) / sizeof(others[0]); i++)
-		for (int field = FIELD_CONSTANT; field <= FIELD_BITS; field++) {
-			const uint32_t *o = others[i];
-			const struct fixture_spec spec = {o[0], o[1], PURSUIT_FORMAT_RG16F, o[2], o[3], PURSUIT_FORMAT_DEPTH16,
-											  o[0], o[3]};
-			check_spec(&spec, &params, (enum fixture_field)field, 77);
-		}
+	cases_of_planes(check_spec);
 }
 
 /* Infinite and huge numbers, one and all: marked where they are. */
@@ -180,7 +133,7 @@ int main(int argc, char **argv)
 	RUN(test_sizes_and_fields);
 	RUN(test_cells);
 	RUN(test_depths);
-	RUN(test_geometry_of_another_size);
+	RUN(test_planes_of_other_sizes);
 	RUN(test_what_is_no_number);
 	RUN(test_too_large);
 	printf("%llu plans, %llu of %llu vertices equal to the bit\n", (unsigned long long)totals.plans,
