@@ -25,6 +25,7 @@
 #include "daemon/options.h"
 #include "daemon/output.h"
 #include "daemon/present/presenter.h"
+#include "daemon/present/x_mode_guard.h"
 #include "daemon/reload.h"
 #include "daemon/seccomp.h"
 #include "daemon/server.h"
@@ -316,6 +317,8 @@ int main(int argc, char **argv)
 	struct error error = {""};
 	int status;
 
+	if (x_mode_guard_run(argc, argv, &status))
+		return status;
 	if (tell(argc, argv))
 		return fflush(stdout) == 0 && !ferror(stdout) ? 0 : not_printed();
 	if (arguments_read(&arguments, argc, argv, &error) < 0) {

@@ -71,6 +71,19 @@ static const XRRModeInfo *best_mode(const struct place *place, const XRRModeInfo
 	return best;
 }
 
+/* The guard comes first: there is no moment without one. */
+static bool change(struct x_mode *mode, const struct place *place, RRMode now, RRMode best)
+{
+	const struct x_mode_guard_task task = {DisplayString(place->display), place->output->crtc, now, best};
+	*mode = (struct x_mode){.crtc = place->output->crtc, .before = now, .now = best};
+	x_mode_guard_start(&mode->guard, &task);
+	if (set_mode(place, mode->crtc, best))
+		return true;
+	x_mode_guard_dismiss(&mode->guard);
+	*mode = (struct x_mode){0};
+	return false;
+}
+
 double x_mode_change(struct x_mode *mode, Display *display, XID output, double refresh_hz)
 {
 	struct place place;
@@ -79,11 +92,7 @@ double x_mode_change(struct x_mode *mode, Display *display, XID output, double r
 	const XRRModeInfo *now = find_place(&place, display, output) ? find_mode(place.resources, place.crtc->mode) : NULL;
 	if (now) {
 		const XRRModeInfo *best = best_mode(&place, now, refresh_hz);
-		rate = rate_of(now);
-		if (best != now && set_mode(&place, place.output->crtc, best->id)) {
-			*mode = (struct x_mode){place.output->crtc, now->id, best->id};
-			rate = rate_of(best);
-		}
+		rate = rate_of(best != now && change(mode, &place, now->id, best->id) ? best : now);
 	}
 	leave_place(&place);
 	return rate;
@@ -100,5 +109,6 @@ void x_mode_restore(struct x_mode *mode, Display *display)
 	if (place.crtc && place.crtc->mode == mode->now)
 		set_mode(&place, mode->crtc, mode->before);
 	leave_place(&place);
+	x_mode_guard_dismiss(&mode->guard);
 	*mode = (struct x_mode){0};
 }

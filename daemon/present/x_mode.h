@@ -11,9 +11,12 @@
 #include <X11/Xlib.h>
 #include <stdbool.h>
 
+#include "daemon/present/x_mode_guard.h"
+
 /* What was changed, as RandR numbers things. Zeroed: nothing. */
 struct x_mode {
 	XID crtc, before, now;
+	struct x_mode_guard guard; /* should the daemon not come to put it back */
 };
 
 /*

@@ -89,9 +89,10 @@ static void test_nearest_rate(void)
 	CHECK(wait_for_rate("DUMMY0", XORG_USUAL_HZ));
 }
 
+/* Also where no process may be started that would put the mode back after a crash. */
 static void test_in_and_out_by_key(void)
 {
-	start("DUMMY1", "120", "--no-fullscreen");
+	start("DUMMY1", "120", "--seccomp");
 	Window window = xvfb_find(&server, "Pursuit");
 	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
 	xvfb_press(&server, window, "f");
@@ -140,6 +141,28 @@ static void test_server_dies(void)
 	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
 }
 
+/* Nobody can tell a daemon that is killed: a process of its own puts the mode back. */
+static void test_killed(void)
+{
+	start("DUMMY1", "120", "--fullscreen");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK_INT(fixture_stop(&fixture, SIGKILL), 128 + SIGKILL);
+	pursuit_close(&stream);
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
+/* Nor can one that ends ask a server that hangs. */
+static void test_ends_while_the_server_hangs(void)
+{
+	start("DUMMY1", "120", "--fullscreen");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	kill(server.pid, SIGSTOP);
+	CHECK(fixture_logged(&fixture, "glfw: the display server does not answer"));
+	stop();
+	kill(server.pid, SIGCONT);
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
 int main(int argc, char **argv)
 {
 	(void)argc;
@@ -153,6 +176,8 @@ int main(int argc, char **argv)
 	RUN(test_nearest_rate);
 	RUN(test_in_and_out_by_key);
 	RUN(test_unplugged);
+	RUN(test_killed);
+	RUN(test_ends_while_the_server_hangs);
 	RUN(test_server_dies);
 	xvfb_stop(&server);
 	fixture_finish(&fixture);
