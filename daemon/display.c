@@ -9,6 +9,7 @@
 #include <string.h>
 #include <sys/eventfd.h>
 #include <sys/timerfd.h>
+#include <time.h>
 #include <unistd.h>
 
 #define SECOND UINT64_C(1000000000)
@@ -16,26 +17,36 @@
 #define LAST_DELAY (8 * SECOND)
 /* A presenter that is lost sooner than this after it was made has not helped. */
 #define GOOD_LIFE (2 * SECOND)
+/* Main waits no longer than this for the user of a presenter. */
+#define PATIENCE (3 * SECOND)
 
 /* A presenter and what was heard of it. */
 struct slot {
 	struct display *display;
 	struct presenter *presenter;
-	bool lost; /* with the display's lock, as the sentence */
+	struct clock_spinning clock; /* the presenter's */
+	struct settings settings;    /* that it was made with, and whose strings it keeps */
+	bool lost;                   /* with the display's lock, as the sentence */
 	char sentence[256];
 };
 
 struct display {
 	struct display_params params;
-	struct clock_spinning clock; /* the presenters' */
+	struct settings settings;
 	struct slot slots[2];
-	struct slot *now, *next; /* in use, NULL none; better than it, to be used as soon as that is gone, mostly NULL */
+	struct slot *now, *next; /* in use, NULL none; told to the user in its place, mostly NULL */
+	struct {
+		struct settings settings;
+		struct slot *slot; /* made for them, not in use yet; NULL: it needs none */
+		bool replaced;     /* the one in use was made for them, in place of another */
+	} prepared;
 	struct loop_source *presenter_source, *wake_source, *retry_source;
 	int wake_fd, retry_fd;
 	uint64_t made_ns, delay_ns;
 	bool taken_away; /* the user was told, and has not answered */
 
 	pthread_mutex_t lock; /* for what other threads say */
+	pthread_cond_t said;
 	bool let_go;
 };
 
@@ -73,14 +84,15 @@ void display_let_go(struct display *display)
 {
 	pthread_mutex_lock(&display->lock);
 	display->let_go = true;
+	pthread_cond_signal(&display->said);
 	pthread_mutex_unlock(&display->lock);
 	wake(display);
 }
 
 static void on_flip(void *data, const struct presenter_flip *flip)
 {
-	struct display *display = ((struct slot *)data)->display;
-	display->params.flip(display->params.data, flip);
+	const struct slot *slot = data;
+	slot->display->params.flip(slot->display->params.data, slot->presenter, flip);
 }
 
 static void on_key(void *data, const struct presenter_key *key)
@@ -104,11 +116,11 @@ static bool may_share_gl(const struct settings *settings)
 	return !settings->gles && (strcmp(settings->context, "auto") == 0 || strcmp(settings->context, "egl") == 0);
 }
 
-static struct presenter_params params_for(struct display *display, struct slot *slot)
+static struct presenter_params params_for(const struct display *display, struct slot *slot)
 {
-	const struct settings *settings = display->params.settings;
+	const struct settings *settings = &slot->settings;
 	return (struct presenter_params){
-		.clock = &display->clock.clock,
+		.clock = &slot->clock.clock,
 		.log = display->params.log,
 		.refresh_numerator = settings->refresh_numerator,
 		.refresh_denominator = settings->refresh_denominator,
@@ -130,11 +142,12 @@ static struct presenter_params params_for(struct display *display, struct slot *
 }
 
 /* Of the one before nothing is heard any more. */
-static struct slot *free_slot(struct display *display)
+static struct slot *free_slot(struct display *display, const struct settings *settings)
 {
 	struct slot *slot = &display->slots[display->now == &display->slots[0]];
 	pthread_mutex_lock(&display->lock);
-	*slot = (struct slot){.display = display};
+	*slot = (struct slot){.display = display, .settings = *settings};
+	clock_init_spinning(&slot->clock, display->params.clock, (uint64_t)settings->spin_us * 1000);
 	pthread_mutex_unlock(&display->lock);
 	return slot;
 }
@@ -156,7 +169,16 @@ static void longer_delay(struct display *display)
 		display->delay_ns = LAST_DELAY;
 }
 
-static void use(struct display *display, struct slot *slot)
+static void look_later(struct display *display)
+{
+	if (!presenter_has_better(display->settings.present, display->now->presenter->impl))
+		return;
+	longer_delay(display);
+	try_later(display);
+}
+
+/* The user knows it. */
+static void adopt(struct display *display, struct slot *slot)
 {
 	const struct presenter_impl *impl = slot->presenter->impl;
 	display->now = slot;
@@ -164,44 +186,47 @@ static void use(struct display *display, struct slot *slot)
 	if (impl->get_event_fd)
 		display->presenter_source =
 			loop_add(display->params.loop, impl->get_event_fd(slot->presenter), EPOLLIN, on_presenter_event, display);
-	display->params.change(display->params.data, slot->presenter);
-	if (presenter_has_better(display->params.settings->present, impl)) {
-		longer_delay(display);
-		try_later(display);
-	}
+	look_later(display);
 	/* It may be lost already. */
 	wake(display);
 }
 
+static void use(struct display *display, struct slot *slot)
+{
+	display->params.change(display->params.data, slot->presenter, false);
+	adopt(display, slot);
+}
+
 static int use_first_that_works(struct display *display, struct error *error)
 {
-	struct slot *slot = free_slot(display);
+	struct slot *slot = free_slot(display, &display->settings);
 	const struct presenter_params params = params_for(display, slot);
-	slot->presenter = presenter_create(display->params.settings->present, &params, error);
+	slot->presenter = presenter_create(display->settings.present, &params, error);
 	if (!slot->presenter)
 		return -ENODEV;
 	use(display, slot);
 	return 0;
 }
 
-static void take_away(struct display *display)
+/* `next` in its place, NULL none. */
+static void take_away(struct display *display, struct slot *next, bool lost)
 {
 	display->taken_away = true;
+	display->next = next;
 	loop_remove(&display->presenter_source);
-	display->params.change(display->params.data, NULL);
+	display->params.change(display->params.data, next ? next->presenter : NULL, lost);
 }
 
 /* One that stands before the one in use. */
 static void look_for_better(struct display *display)
 {
-	struct slot *slot = free_slot(display);
+	struct slot *slot = free_slot(display, &display->settings);
 	const struct presenter_params params = params_for(display, slot);
 	const struct presenter_impl *impl = display->now->presenter->impl;
-	slot->presenter = presenter_create_better(display->params.settings->present, impl, &params);
+	slot->presenter = presenter_create_better(display->settings.present, impl, &params);
 	if (slot->presenter) {
 		log_info(display->params.log, "%s works again and takes over from %s", slot->presenter->impl->name, impl->name);
-		display->next = slot;
-		take_away(display);
+		take_away(display, slot, false);
 		return;
 	}
 	longer_delay(display);
@@ -233,18 +258,24 @@ static void on_retry(void *data, uint32_t events)
 
 /* ---- losing one ---- */
 
-static void bury(struct display *display)
+static void destroy_now(struct display *display)
 {
-	struct slot *next = display->next;
-	const bool good = clock_now(display->params.clock) - display->made_ns > GOOD_LIFE;
 	presenter_destroy(&display->now->presenter);
-	display->now = display->next = NULL;
+	display->now = NULL;
 	display->taken_away = false;
 	pthread_mutex_lock(&display->lock);
 	display->let_go = false;
 	pthread_mutex_unlock(&display->lock);
+}
+
+static void bury(struct display *display)
+{
+	struct slot *next = display->next;
+	const bool good = clock_now(display->params.clock) - display->made_ns > GOOD_LIFE;
+	destroy_now(display);
+	display->next = NULL;
 	if (next) {
-		use(display, next);
+		adopt(display, next);
 		log_info(display->params.log, "%s presents now", next->presenter->impl->name);
 		return;
 	}
@@ -270,10 +301,150 @@ static void on_wake(void *data, uint32_t events)
 	pthread_mutex_unlock(&display->lock);
 	if (lost && !display->taken_away) {
 		log_warning(display->params.log, "%s is lost: %s", display->now->presenter->impl->name, sentence);
-		take_away(display);
+		take_away(display, NULL, true);
 	} else if (let_go && display->taken_away) {
 		bury(display);
 	}
+}
+
+/* ---- other settings ---- */
+
+/* Has the user let go of the one that was taken away? */
+static bool wait_for_user(struct display *display)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_sec += (time_t)(PATIENCE / SECOND);
+	pthread_mutex_lock(&display->lock);
+	while (!display->let_go && pthread_cond_timedwait(&display->said, &display->lock, &until) == 0)
+		;
+	const bool let_go = display->let_go;
+	pthread_mutex_unlock(&display->lock);
+	return let_go;
+}
+
+static bool settle(struct display *display)
+{
+	if (!display->taken_away)
+		return true;
+	if (!wait_for_user(display))
+		return false;
+	bury(display);
+	return true;
+}
+
+static bool concerns(const struct presenter_impl *impl, const struct settings *a, const struct settings *b)
+{
+	if (a->refresh_numerator != b->refresh_numerator || a->refresh_denominator != b->refresh_denominator ||
+		a->spin_us != b->spin_us)
+		return true;
+	switch (impl->kind) {
+	case PRESENTER_MEMORY:
+		return false;
+	case PRESENTER_WINDOW:
+		return strcmp(a->monitor, b->monitor) != 0 || a->fullscreen != b->fullscreen ||
+			   a->window_width != b->window_width || a->window_height != b->window_height ||
+			   may_share_gl(a) != may_share_gl(b);
+	case PRESENTER_DEVICE:
+		return strcmp(a->connector, b->connector) != 0 || strcmp(a->mode, b->mode) != 0 ||
+			   strcmp(a->kms_device, b->kms_device) != 0 || may_share_gl(a) != may_share_gl(b);
+	}
+	return false;
+}
+
+/* The one in use goes first; if no other can be made it comes back. Both with settings of their own. */
+static int replace(struct display *display, const struct settings *fresh, struct error *error)
+{
+	const struct settings before = display->now->settings;
+	const struct presenter_impl *impl = display->now->presenter->impl;
+	take_away(display, NULL, false);
+	if (!wait_for_user(display))
+		return error_set(error, -ETIMEDOUT, "present: %s is in use still and cannot be made anew", impl->name);
+	destroy_now(display);
+	struct slot *slot = free_slot(display, fresh);
+	struct presenter_params params = params_for(display, slot);
+	slot->presenter = presenter_create(impl->name, &params, error);
+	const int result = slot->presenter ? 0 : -ENODEV;
+	if (result < 0) {
+		struct error again;
+		slot = free_slot(display, &before);
+		params = params_for(display, slot);
+		slot->presenter = presenter_create(impl->name, &params, &again);
+	}
+	if (slot->presenter)
+		use(display, slot);
+	else
+		try_later(display);
+	return result;
+}
+
+/* Beside what there is: one of the list, if it need not be the one in use. Its slot stays empty if there is none. */
+static int prepare_another(struct display *display, const struct settings *fresh, struct error *error)
+{
+	const struct presenter_impl *impl = display->now ? display->now->presenter->impl : NULL;
+	struct slot *slot = free_slot(display, fresh);
+	const struct presenter_params params = params_for(display, slot);
+	slot->presenter = presenter_create_before(fresh->present, impl, &params, error);
+	display->prepared.slot = slot->presenter ? slot : NULL;
+	return slot->presenter || (impl && presenter_is_listed(fresh->present, impl)) ? 0 : -ENODEV;
+}
+
+/* The one in use anew. */
+static int prepare_same(struct display *display, const struct settings *fresh, struct error *error)
+{
+	const struct presenter_impl *impl = display->now->presenter->impl;
+	if (impl->kind != PRESENTER_MEMORY) {
+		const int result = replace(display, fresh, error);
+		display->prepared.replaced = result == 0;
+		return result;
+	}
+	struct slot *slot = free_slot(display, fresh);
+	const struct presenter_params params = params_for(display, slot);
+	slot->presenter = presenter_create(impl->name, &params, error);
+	display->prepared.slot = slot->presenter ? slot : NULL;
+	return slot->presenter ? 0 : -ENODEV;
+}
+
+int display_prepare(struct display *display, const struct settings *fresh, struct error *error)
+{
+	int result = 0;
+	display->prepared.slot = NULL;
+	display->prepared.replaced = false;
+	if (!settle(display))
+		return error_set(error, -ETIMEDOUT, "present: the presenter before this one is in use still");
+	display->prepared.settings = *fresh;
+	if (!display->now || strcmp(fresh->present, display->settings.present) != 0)
+		result = prepare_another(display, fresh, error);
+	if (result == 0 && display->now && !display->prepared.slot &&
+		concerns(display->now->presenter->impl, &display->settings, fresh))
+		result = prepare_same(display, fresh, error);
+	return result;
+}
+
+void display_commit(struct display *display)
+{
+	struct slot *slot = display->prepared.slot;
+	display->settings = display->prepared.settings;
+	display->prepared.slot = NULL;
+	if (slot && display->now) {
+		take_away(display, slot, false);
+		settle(display);
+	} else if (slot) {
+		use(display, slot);
+	} else if (display->now && !display->taken_away) {
+		look_later(display);
+	}
+}
+
+void display_abandon(struct display *display)
+{
+	struct error error;
+	if (display->prepared.slot)
+		presenter_destroy(&display->prepared.slot->presenter);
+	else if (display->prepared.replaced && settle(display) && display->now &&
+			 replace(display, &display->settings, &error) < 0)
+		log_warning(display->params.log, "%s", error.text);
+	display->prepared.slot = NULL;
 }
 
 /* ---- life ---- */
@@ -294,14 +465,19 @@ static int start(struct display *display, struct error *error)
 struct display *display_create(const struct display_params *params, struct error *error)
 {
 	struct display *display = calloc(1, sizeof(*display));
+	pthread_condattr_t attributes;
 	if (!display) {
 		error_set(error, -ENOMEM, "display: out of memory");
 		return NULL;
 	}
 	display->params = *params;
-	clock_init_spinning(&display->clock, params->clock, (uint64_t)params->settings->spin_us * 1000);
+	display->settings = *params->settings;
 	display->wake_fd = display->retry_fd = -1;
 	pthread_mutex_init(&display->lock, NULL);
+	pthread_condattr_init(&attributes);
+	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+	pthread_cond_init(&display->said, &attributes);
+	pthread_condattr_destroy(&attributes);
 	if (start(display, error) < 0)
 		display_destroy(&display);
 	return display;
@@ -322,6 +498,7 @@ void display_destroy(struct display **display)
 		close(self->wake_fd);
 	if (self->retry_fd >= 0)
 		close(self->retry_fd);
+	pthread_cond_destroy(&self->said);
 	pthread_mutex_destroy(&self->lock);
 	free(self);
 }

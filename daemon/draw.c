@@ -114,9 +114,8 @@ static void add_cost(struct render *render, struct cost *cost, uint64_t start_ns
 		busy_add(&render->busy, start_ns, start_ns + run_ns);
 }
 
-/* Queues a picture for a vblank; -ETIME if it is over, and the picture is the caller's still. */
-static int queue(struct render *render, struct presenter_image *image, uint64_t vblank, enum stats_show show,
-				 double phase)
+int draw_queue(struct render *render, struct presenter_image *image, uint64_t vblank, enum stats_show show,
+			   double phase)
 {
 	const uint64_t serial = render->serial + 1;
 	const struct showing_picture picture = {.serial = serial,
@@ -195,6 +194,7 @@ static bool take(struct render *render, uint64_t now_ns)
 									  .ready_ns = now_ns + render_real_cost(render)};
 	render->stream_number = render->frame.stream;
 	render->orphan = false;
+	draw_forget_kept(render);
 	render->owner.record(render->owner.data, &render->frame);
 	pacer_add_frame(&render->pacer, &frame);
 	render->group++;
@@ -250,7 +250,7 @@ static int queue_real(struct render *render, struct presenter_image *image, stru
 {
 	bool late = false;
 	int result;
-	while ((result = queue(render, image, *vblank, STATS_REAL, decision->phase)) == -ETIME) {
+	while ((result = draw_queue(render, image, *vblank, STATS_REAL, decision->phase)) == -ETIME) {
 		late = true;
 		render_follow_grid(render); /* it may have changed without a flip that would have told */
 		showing_plan(&render->showing, *vblank, SHOWING_REAL);
@@ -430,7 +430,7 @@ void draw_empty(struct render *render, uint64_t vblank)
 	image.holds = 0;
 	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
 	view_draw(render, &image);
-	render->front_black = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
+	render->front_black = draw_queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
 	add_cost(render, &render->empty_cost, start_ns);
 	render->front_plain &= !render->front_black;
 	if (!render->front_black)
@@ -445,6 +445,7 @@ void draw_held(struct render *render, uint64_t vblank)
 		set_params(render);
 	render->stream_number = render->frame.stream;
 	render->orphan = false;
+	draw_forget_kept(render);
 	render->group++;
 	if (begin(render, &decision))
 		draw_plain(render, vblank);
@@ -456,7 +457,7 @@ void draw_in_between(struct render *render, const struct pacer_decision *decisio
 	struct presenter_image image;
 	if (draw(render, ENGINE_SHOW_IN_BETWEEN, decision->phase, &image) < 0)
 		return;
-	const int queued = queue(render, &image, vblank, STATS_IN_BETWEEN, decision->phase);
+	const int queued = draw_queue(render, &image, vblank, STATS_IN_BETWEEN, decision->phase);
 	add_cost(render, &render->between_cost, start_ns);
 	if (queued < 0) {
 		render->presenter->impl->release(render->presenter, &image);
@@ -474,7 +475,7 @@ void draw_plain(struct render *render, uint64_t vblank)
 	if (draw(render, ENGINE_SHOW_PLAIN, 0.0, &image) < 0)
 		return;
 	if (vblank != 0) {
-		render->front_plain = queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
+		render->front_plain = draw_queue(render, &image, vblank, STATS_REPEAT, 0.0) == 0;
 		add_cost(render, &render->plain_cost, start_ns);
 		render->front_black &= !render->front_plain;
 		if (!render->front_plain)

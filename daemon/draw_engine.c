@@ -58,10 +58,12 @@ void draw_follow_context(struct render *render)
 		return;
 	/* One in a context that goes, or that could have been in the one that comes. */
 	if (render->engine && (context || engine_get_info(render->engine)->brought)) {
+		if (!render->kept.data)
+			draw_keep(render);
 		engine_destroy(&render->engine);
 		render->engine_retry_ns = render->engine_delay_ns = 0;
+		render->begun = render->report_due = false;
 	}
-	render->begun = false;
 	render->context = context;
 	render->context_shunned = render->through_memory = false;
 	if (context)

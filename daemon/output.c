@@ -33,19 +33,17 @@ void output_push_event(struct output *output, const struct output_event *event)
 /* ---- called by the display ---- */
 
 /* On main. */
-static void on_change(void *data, struct presenter *presenter)
+static void on_change(void *data, struct presenter *presenter, bool lost)
 {
 	struct output *output = data;
+	struct output_presenter *wished = &output->wished_presenter;
 	pthread_mutex_lock(&output->lock);
-	output->presenter = presenter;
-	output->presenter_changed = true;
-	snprintf(output->info.presenter, sizeof(output->info.presenter), "%s", presenter ? presenter->impl->name : "none");
-	snprintf(output->info.display, sizeof(output->info.display), "%s",
+	*wished = (struct output_presenter){.presenter = presenter, .lost = lost};
+	snprintf(wished->name, sizeof(wished->name), "%s", presenter ? presenter->impl->name : "none");
+	snprintf(wished->display, sizeof(wished->display), "%s",
 			 presenter && presenter->impl->get_display ? presenter->impl->get_display(presenter) : "");
-	if (presenter)
-		output->info.grid = presenter->impl->get_grid(presenter);
-	output->woken = true;
-	pthread_cond_signal(&output->wake);
+	output->presenter_changed = true;
+	output_wake_locked(output);
 	pthread_mutex_unlock(&output->lock);
 }
 
@@ -62,15 +60,17 @@ static bool can_wait(const struct output *output, const struct presenter_flip *f
 }
 
 /* On the presenter's thread. */
-static void on_flip(void *data, const struct presenter_flip *flip)
+static void on_flip(void *data, const struct presenter *presenter, const struct presenter_flip *flip)
 {
 	struct output *output = data;
+	if (atomic_load(&output->presenter) != presenter)
+		return;
 	lab_flip(output->params.lab, flip);
 	pthread_mutex_lock(&output->lock);
 	if (output->flip_count < OUTPUT_FLIPS)
-		output->flips[output->flip_count++] = *flip;
-	else
-		output->flips[OUTPUT_FLIPS - 1].skipped++; /* a render thread that hangs this long has more to worry about */
+		output->flips[output->flip_count++] = (struct output_flip){presenter, *flip};
+	else /* a render thread that hangs this long has more to worry about */
+		output->flips[OUTPUT_FLIPS - 1].flip.skipped++;
 	const bool wakes = !can_wait(output, flip);
 	output->woken |= wakes;
 	pthread_mutex_unlock(&output->lock);

@@ -23,7 +23,8 @@ struct output {
 	int event_fd;
 
 	_Atomic uint64_t beats, rounds;
-	pthread_mutex_t lock; /* the mailbox */
+	_Atomic(const struct presenter *) presenter; /* in use; flips of others are nobody's */
+	pthread_mutex_t lock;                        /* the mailbox */
 	pthread_cond_t wake;
 	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed;
 	bool wakes_soon; /* the render thread, by itself, if nobody wakes it */
@@ -32,10 +33,17 @@ struct output {
 	struct error start_error;
 	struct stream *streams[OUTPUT_STREAMS]; /* referenced; in the order of opening */
 	uint32_t stream_count;
-	struct presenter *presenter; /* to be used from now on */
+	struct output_presenter {
+		struct presenter *presenter; /* NULL: none */
+		bool lost;                   /* the one before it */
+		char name[32], display[192]; /* as output_info says */
+	} wished_presenter;
 	uint32_t view;
 	struct settings wished; /* by main, for the render thread */
-	struct presenter_flip flips[OUTPUT_FLIPS];
+	struct output_flip {
+		const struct presenter *presenter;
+		struct presenter_flip flip;
+	} flips[OUTPUT_FLIPS];
 	uint32_t flip_count;
 	struct output_event events[OUTPUT_EVENTS]; /* for main */
 	uint32_t event_count;
@@ -50,6 +58,7 @@ struct output {
 	/* the render thread's own */
 	struct settings settings; /* a copy: some change while it runs */
 	struct settings due;      /* what it becomes next */
+	struct output_presenter coming;
 	struct stats stats;
 	struct render render;
 	struct stream *own[OUTPUT_STREAMS]; /* referenced copy of streams */

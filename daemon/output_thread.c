@@ -89,29 +89,51 @@ static void adopt_streams(struct output *output, struct stream *const *streams, 
 		stream_release(&old[i]);
 }
 
-/* The rate and the phase that clients are told follow the display's. */
-static void handle_flips(struct output *output, const struct presenter_flip *flips, uint32_t count)
+/*
+ * The rate and the phase that clients are told follow the display's. Flips that come before or after a presenter's time
+ * are not its.
+ */
+static void handle_flips(struct output *output, const struct output_flip *flips, uint32_t count)
 {
-	if (count == 0)
-		return;
+	enum presenter_time_source source = PRESENTER_TIME_SOURCES;
 	for (uint32_t i = 0; i < count; i++) {
-		render_flip(&output->render, &flips[i]);
-		output->stats.flips_by_source[flips[i].time_source]++;
+		if (flips[i].presenter != output->render.presenter)
+			continue;
+		source = flips[i].flip.time_source;
+		render_flip(&output->render, &flips[i].flip);
+		output->stats.flips_by_source[source]++;
 	}
+	if (source == PRESENTER_TIME_SOURCES)
+		return;
 	const bool changed = render_follow_grid(&output->render);
 	pthread_mutex_lock(&output->lock);
 	if (changed)
 		output->info.grid = output->render.grid;
-	output->info.time_source = flips[count - 1].time_source;
+	output->info.time_source = source;
 	pthread_mutex_unlock(&output->lock);
 	publish_stats(output);
 }
 
-/* Flips that come before or after a presenter's time are not its. */
-static void change_presenter(struct output *output, struct presenter *presenter)
+/* The one wished for is in use now. */
+static void tell_presenter(struct output *output, const struct output_presenter *wished)
 {
-	render_set_presenter(&output->render, presenter);
-	if (!presenter)
+	pthread_mutex_lock(&output->lock);
+	snprintf(output->info.presenter, sizeof(output->info.presenter), "%s", wished->name);
+	snprintf(output->info.display, sizeof(output->info.display), "%s", wished->display);
+	if (wished->presenter)
+		output->info.grid = output->render.grid;
+	pthread_mutex_unlock(&output->lock);
+}
+
+/* When it is time. */
+static void change_presenter(struct output *output)
+{
+	const bool had_one = output->render.presenter != NULL;
+	if (!render_go_over(&output->render))
+		return;
+	atomic_store(&output->presenter, output->render.presenter);
+	tell_presenter(output, &output->coming);
+	if (had_one)
 		display_let_go(output->display);
 }
 
@@ -142,13 +164,14 @@ static void grant(struct output *output, const struct wishes *wishes)
 /* Empties the mailbox. False: stop. */
 static bool read_mailbox(struct output *output)
 {
-	struct presenter_flip flips[OUTPUT_FLIPS];
+	struct output_flip flips[OUTPUT_FLIPS];
 	struct stream *streams[OUTPUT_STREAMS];
 	uint32_t stream_count = 0;
 
 	pthread_mutex_lock(&output->lock);
 	const bool go_on = !output->stop, changed = output->streams_changed, new_presenter = output->presenter_changed;
-	struct presenter *presenter = output->presenter;
+	if (new_presenter)
+		output->coming = output->wished_presenter;
 	const uint32_t flip_count = output->flip_count;
 	memcpy(flips, output->flips, flip_count * sizeof(flips[0]));
 	for (; changed && stream_count < output->stream_count; stream_count++)
@@ -162,7 +185,8 @@ static bool read_mailbox(struct output *output)
 	handle_flips(output, flips, flip_count);
 	grant(output, &wishes);
 	if (new_presenter)
-		change_presenter(output, presenter);
+		render_wish_presenter(&output->render, output->coming.presenter, output->coming.lost);
+	change_presenter(output);
 	if (changed)
 		adopt_streams(output, streams, stream_count);
 	for (uint32_t i = 0; i + 1 < output->own_count; i++)
@@ -186,10 +210,11 @@ static int start(struct output *output)
 	struct error error = {""};
 	/* What it draws in may be the presenter's. */
 	pthread_mutex_lock(&output->lock);
-	struct presenter *presenter = output->presenter;
+	output->coming = output->wished_presenter;
 	output->presenter_changed = false;
 	pthread_mutex_unlock(&output->lock);
-	change_presenter(output, presenter);
+	render_wish_presenter(&output->render, output->coming.presenter, false);
+	change_presenter(output);
 	const int result = render_start(&output->render, &error);
 	pthread_mutex_lock(&output->lock);
 	output->started = true;

@@ -22,6 +22,9 @@
 #define FORGIVEN_NS UINT64_C(5000000000)
 /* Before anything was measured. */
 #define FIRST_COST_NS UINT64_C(5000000)
+/* One presenter takes over from another at the boundary of a frame, but not later than this; looked for so often. */
+#define GO_OVER_NS UINT64_C(100000000)
+#define GO_OVER_LOOK_NS UINT64_C(1000000)
 
 int render_start(struct render *render, struct error *error)
 {
@@ -42,6 +45,7 @@ void render_finish(struct render *render)
 {
 	tee_destroy(&render->tee);
 	engine_destroy(&render->engine);
+	draw_forget_kept(render);
 	view_finish(&render->view);
 	showing_finish(&render->showing);
 }
@@ -64,7 +68,27 @@ static void want_held(struct render *render)
 		render->stream && !atomic_load(&render->stream->ended) && stream_get_held(render->stream, &render->frame);
 }
 
-void render_set_presenter(struct render *render, struct presenter *presenter)
+void render_wish_presenter(struct render *render, struct presenter *presenter, bool at_once)
+{
+	render->next.wished = true;
+	render->next.presenter = presenter;
+	render->next.at_once = at_once;
+	render->next.since_ns = clock_now(render->clock);
+}
+
+static bool has_new_frame(const struct render *render)
+{
+	return render->stream && !atomic_load(&render->stream->ended) && stream_has_frame(render->stream);
+}
+
+static bool may_go_over(const struct render *render)
+{
+	if (!render->presenter || render->next.at_once || clock_now(render->clock) - render->next.since_ns > GO_OVER_NS)
+		return true;
+	return !showing_has_unshown(&render->showing) && (render->paused || has_new_frame(render));
+}
+
+static void set_presenter(struct render *render, struct presenter *presenter)
 {
 	close_all_frames(render);
 	showing_finish(&render->showing);
@@ -78,12 +102,24 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	showing_init(&render->showing, render->stats);
 	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&render->grid);
 	start_pacer(render);
-	render->begun = render->report_due = render->standby_done = render->front_plain = render->front_black = false;
+	render->standby_done = render->front_plain = render->front_black = false;
 	render->hold_until_ns = render->take_again_ns = 0;
 	render->real_vblank = render->next_vblank = 0;
-	render->pause_vblanks = 0;
 	render->paused = true;
+	/* Nothing was shown there yet: what stays is to be drawn, unless a frame comes first. */
+	render->pause_vblanks = render->group > 0 ? PLAIN_AFTER : 0;
+	render->redraw |= render->group > 0;
+	render->work_ns = 0;
 	want_held(render);
+}
+
+bool render_go_over(struct render *render)
+{
+	if (!render->next.wished || !may_go_over(render))
+		return false;
+	render->next.wished = false;
+	set_presenter(render, render->next.presenter);
+	return true;
 }
 
 bool render_follow_grid(struct render *render)
@@ -116,6 +152,9 @@ void render_set_streams(struct render *render, struct stream *const *streams, ui
 	if (!found && render->group > 0 && !render->orphan) {
 		render->orphan = true;
 		render->redraw |= wants_black(render);
+		/* A window takes its context with it when it is lost. */
+		if (render->engine && engine_get_info(render->engine)->brought)
+			draw_keep(render);
 	}
 	if (shown == render->stream)
 		return;
@@ -289,7 +328,7 @@ static bool shows_what_stays(const struct render *render)
 {
 	if (wants_black(render))
 		return render->front_black;
-	return render->front_plain || !render->begun || !render->engine;
+	return render->front_plain || (!render->begun && !render->kept.data) || !render->engine;
 }
 
 static uint64_t stay_cost(const struct render *render)
@@ -301,8 +340,10 @@ static void draw_what_stays(struct render *render, uint64_t vblank)
 {
 	if (wants_black(render))
 		draw_empty(render, vblank);
-	else
+	else if (render->begun)
 		draw_plain(render, vblank);
+	else
+		draw_kept(render, vblank);
 }
 
 static void fall_asleep(struct render *render)
@@ -342,7 +383,7 @@ static void draw_still_anew(struct render *render, uint64_t now_ns)
 	const uint64_t cost = render->show_held ? render_real_cost(render) : stay_cost(render);
 	const uint64_t vblank = grid_at_or_after(&render->grid, now_ns + cost);
 	render->redraw = false;
-	if ((!wants_black(render) && !render->begun && !render->show_held) || !render->engine)
+	if ((!wants_black(render) && !render->begun && !render->show_held && !render->kept.data) || !render->engine)
 		return;
 	if (vblank > render->next_vblank)
 		render->next_vblank = vblank;
@@ -447,7 +488,7 @@ bool render_is_stuck(const struct render *render)
 		   now_ns - render->unanswered.first_ns > patience_ns && now_ns - render->unanswered.last_ns < FORGIVEN_NS;
 }
 
-uint64_t render_step(struct render *render)
+static uint64_t step(struct render *render)
 {
 	const uint64_t now_ns = clock_now(render->clock);
 	uint64_t wake_ns = RENDER_NEVER;
@@ -464,7 +505,7 @@ uint64_t render_step(struct render *render)
 	if (lost)
 		want_held(render);
 	skip_passed(render, now_ns);
-	if (render->stream && !atomic_load(&render->stream->ended) && stream_has_frame(render->stream)) {
+	if (has_new_frame(render) && !render->next.wished) {
 		wake_ns = later_of(real_start(render, now_ns), render->take_again_ns);
 		urgent = now_ns >= wake_ns;
 		if (urgent && !fits_before_real(render, now_ns)) {
@@ -482,4 +523,10 @@ uint64_t render_step(struct render *render)
 	const bool moves = render->stream && render->begun && render->pacer.has_frame;
 	const uint64_t next_ns = moves ? show_between(render, now_ns, urgent) : wind_down(render, now_ns);
 	return sooner_of(next_ns, wake_ns);
+}
+
+uint64_t render_step(struct render *render)
+{
+	const uint64_t next_ns = step(render);
+	return render->next.wished ? sooner_of(next_ns, clock_now(render->clock) + GO_OVER_LOOK_NS) : next_ns;
 }

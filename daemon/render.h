@@ -49,7 +49,13 @@ struct render {
 	bool stand_in;                             /* it is one on the CPU, in place of one that was lost */
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
 	uint64_t engine_made_ns;
-	struct presenter *presenter;             /* the display's; NULL: lost */
+	struct presenter *presenter; /* the display's; NULL: lost */
+	struct {
+		bool wished;
+		struct presenter *presenter; /* that is to be used next, NULL none */
+		bool at_once;
+		uint64_t since_ns;
+	} next;
 	const struct presenter_context *context; /* that it offers to draw in; NULL: none */
 	struct engine_context brought;           /* the same, as the engine wants it */
 	bool context_shunned;                    /* an engine was lost in it */
@@ -76,9 +82,13 @@ struct render {
 	bool boosted;           /* it gives light that in-betweens take away */
 	bool still;             /* its in-betweens look like itself */
 	bool standby_done;
-	bool front_plain;       /* the picture queued last may stay for good */
-	bool front_black;       /* it is black: nobody's */
-	bool orphan;            /* the stream of the frame begun last is gone */
+	bool front_plain; /* the picture queued last may stay for good */
+	bool front_black; /* it is black: nobody's */
+	bool orphan;      /* the stream of the frame begun last is gone */
+	struct {
+		uint8_t *data; /* packed; NULL: none */
+		uint32_t width, height;
+	} kept;                 /* what stays of an orphan where the engine does not have it any more */
 	uint64_t stream_number; /* of the frame taken last */
 	uint64_t group, serial;
 	uint32_t n;
@@ -105,10 +115,16 @@ int render_start(struct render *render, struct error *error);
 void render_finish(struct render *render);
 
 /*
- * Presents there from now on, beginning anew; with NULL (the display is lost) frames are taken and answered with
- * REPLACED until there is one again.
+ * Presents there soon, beginning anew; with NULL (the display is lost) frames are taken and answered with REPLACED
+ * until there is one again. No real frame is begun until then. at_once: the one in use is of no use any more.
  */
-void render_set_presenter(struct render *render, struct presenter *presenter);
+void render_wish_presenter(struct render *render, struct presenter *presenter, bool at_once);
+/*
+ * Goes over to the one wished for: at the boundary of a frame, when each real frame that was given to the one in use
+ * has been shown there and the next one is there, at most a tenth of a second after the wish. The picture that stays is
+ * drawn for the new one. Has it gone over now?
+ */
+bool render_go_over(struct render *render);
 /* What is drawn over the pictures, VIEW_... or-ed. */
 void render_set_view(struct render *render, uint32_t switches);
 /* The next real frames are made with these; checked already. */
@@ -159,6 +175,20 @@ void draw_plain(struct render *render, uint64_t vblank);
 void draw_empty(struct render *render, uint64_t vblank);
 /* Adds the engine's report about the frame begun last, now that all its pictures are drawn. */
 void draw_count_report(struct render *render);
+
+/*
+ * Queues a picture of this show for a vblank; -ETIME if it is over. With an error the picture is the caller's still.
+ */
+int draw_queue(struct render *render, struct presenter_image *image, uint64_t vblank, enum stats_show show,
+			   double phase);
+
+/* ---- draw_kept.c ---- */
+
+/* The engine goes, or might: an orphan's picture is kept in memory. Nothing for others. */
+void draw_keep(struct render *render);
+void draw_forget_kept(struct render *render);
+/* Draws it, to stay from this vblank on. */
+void draw_kept(struct render *render, uint64_t vblank);
 
 /* ---- draw_engine.c ---- */
 

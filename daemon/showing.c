@@ -49,6 +49,16 @@ void showing_close_frames(struct showing *showing, uint64_t group)
 			close_frame(showing, &showing->frames[g % SHOWING_FRAMES]);
 }
 
+bool showing_has_unshown(const struct showing *showing)
+{
+	for (uint32_t i = 0; i < SHOWING_FRAMES; i++) {
+		const struct showing_frame *frame = &showing->frames[i];
+		if (frame->group != 0 && frame->report.flip_ns == 0 && frame->report.state != PURSUIT_FEEDBACK_REFUSED)
+			return true;
+	}
+	return false;
+}
+
 void showing_forget_ended(struct showing *showing)
 {
 	for (uint32_t i = 0; i < SHOWING_FRAMES; i++)

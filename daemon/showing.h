@@ -79,6 +79,9 @@ void showing_plan(struct showing *showing, uint64_t vblank, enum showing_plan pl
 /* A vblank is over. */
 void showing_flip(struct showing *showing, const struct presenter_flip *flip);
 
+/* Is there a real frame that was taken, not refused, and not shown yet? */
+bool showing_has_unshown(const struct showing *showing);
+
 /* Reports every frame of groups before `group`: shown, or replaced if it never was. */
 void showing_close_frames(struct showing *showing, uint64_t group);
 

@@ -515,6 +515,7 @@ static void glfw_toggle_fullscreen(struct presenter *presenter)
 const struct presenter_impl presenter_glfw = {
 	.name = "glfw",
 	.description = "a window, or full screen, on a desktop",
+	.kind = PRESENTER_WINDOW,
 	.is_possible = glfw_is_possible,
 	.create = glfw_create,
 	.destroy = glfw_destroy,

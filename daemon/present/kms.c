@@ -258,6 +258,7 @@ static uint64_t kms_get_lead(struct presenter *presenter)
 const struct presenter_impl presenter_kms = {
 	.name = "kms",
 	.description = "a display without any compositor: pictures scanned out by the kernel's display controller",
+	.kind = PRESENTER_DEVICE,
 	.is_possible = kms_is_possible,
 	.create = kms_create,
 	.destroy = kms_destroy,

@@ -70,11 +70,26 @@ int presenter_check_list(const char *list, struct error *error)
 	return any ? 0 : error_set(error, -EINVAL, "present: the list is empty; there are headless, glfw and kms");
 }
 
+bool presenter_is_listed(const char *list, const struct presenter_impl *impl)
+{
+	char name[NAME_BYTES];
+	while (next_name(&list, name))
+		if (strcmp(name, impl->name) == 0)
+			return true;
+	return false;
+}
+
 struct presenter *presenter_create(const char *list, const struct presenter_params *params, struct error *error)
+{
+	return presenter_create_before(list, NULL, params, error);
+}
+
+struct presenter *presenter_create_before(const char *list, const struct presenter_impl *than,
+										  const struct presenter_params *params, struct error *error)
 {
 	char name[NAME_BYTES];
 	error_set(error, -EINVAL, "present: the list is empty");
-	while (next_name(&list, name)) {
+	while (next_name(&list, name) && (!than || strcmp(name, than->name) != 0)) {
 		struct presenter *presenter = is_built(name) ? find(name)->create(params, error) : NULL;
 		if (presenter)
 			return presenter;

@@ -141,10 +141,18 @@ struct presenter_params {
 
 struct presenter;
 
+/* Which options concern it, and whether there may be two of it at a time, as when one takes over from the other. */
+enum presenter_kind {
+	PRESENTER_MEMORY = 0, /* none; as many as you like */
+	PRESENTER_WINDOW,     /* monitor, fullscreen, width, height; one */
+	PRESENTER_DEVICE,     /* connector, mode, device; one */
+};
+
 /* All functions are mandatory unless said otherwise; a presenter that was not built in has none (a stub). */
 struct presenter_impl {
 	const char *name;
 	const char *description;
+	enum presenter_kind kind;
 	/*
 	 * Optional: may create() work by now? On main, while another presenter is in use: takes nothing from anybody and
 	 * does not wait. Without it create() is only tried when no presenter is in use.
@@ -218,6 +226,10 @@ int presenter_check_list(const char *list, struct error *error);
 
 /* Creates the first presenter of the list that works; why others did not is logged. NULL with the last sentence. */
 struct presenter *presenter_create(const char *list, const struct presenter_params *params, struct error *error);
+/* The same with those that stand before this one in the list; all, if it is not in the list. */
+struct presenter *presenter_create_before(const char *list, const struct presenter_impl *than,
+										  const struct presenter_params *params, struct error *error);
+bool presenter_is_listed(const char *list, const struct presenter_impl *impl);
 /*
  * The first that works of those that stand before this one in the list and look possible; quietly NULL if there is
  * none. The one that there is already goes on meanwhile.
