@@ -4,14 +4,9 @@
 #include "daemon/control.h"
 
 #include <errno.h>
-#include <fcntl.h>
-#include <inttypes.h>
 #include <limits.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "daemon/client.h"
@@ -22,134 +17,12 @@
 #define TIMELINE_ROWS 400u
 #define LATENCY_ROWS 200u /* that fit a packet */
 
-/* A recording that is being closed on a thread of its own, since the disk may be slow. */
-struct closing {
-	pthread_t thread;
-	bool running;
-	struct recorder *recorder;
-	struct recorder_stats stats;
-	struct error error;
-	int result;
-	int done_fd; /* eventfd */
-	struct loop_source *source;
-	uint64_t client_id;
-	uint32_t serial;
-};
-
 struct control {
 	struct control_params params;
 	struct server *server;
 	uint64_t start_ns;
-	bool recording;
-	struct recorder *recorder; /* the output's, while recording; owned here */
-	struct closing closing;
+	struct capture *capture;
 };
-
-/* ---- recording ---- */
-
-static void print_settings(const struct settings *settings, FILE *out, const char *equals)
-{
-	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
-		settings_get(settings, row->name, value, sizeof(value));
-		fprintf(out, "%s%s%s\n", row->name, equals, value);
-	}
-}
-
-static char *settings_text(const struct settings *settings, const char *equals)
-{
-	char *text = NULL;
-	size_t size = 0;
-	FILE *out = open_memstream(&text, &size);
-	if (!out)
-		return NULL;
-	print_settings(settings, out, equals);
-	fclose(out);
-	return text;
-}
-
-/* Path or fd (taken over). 0 or -errno with a sentence. */
-static int start_recording(struct control *control, const char *path, int fd, struct error *error)
-{
-	const struct recorder_params params = {
-		.writer = {.path = path, .fd = fd > 0 ? fd : 0, .info = "program=pursuitd " PURSUITD_VERSION "\n"},
-	};
-	control->recorder = recorder_create(&params, error);
-	if (!control->recorder)
-		return -EIO;
-	char *text = settings_text(control->params.settings, "=");
-	if (text)
-		recorder_settings(control->recorder, text, clock_now(control->params.clock));
-	free(text);
-	control->recording = true;
-	output_set_recorder(control->params.output, control->recorder);
-	log_info(control->params.log, "recording %s", path ? path : "into a client's file");
-	return 0;
-}
-
-static void *close_recording(void *data)
-{
-	struct closing *closing = data;
-	const uint64_t one = 1;
-	closing->result = recorder_destroy(&closing->recorder, &closing->stats, &closing->error);
-	while (write(closing->done_fd, &one, sizeof(one)) < 0 && errno == EINTR)
-		;
-	return NULL;
-}
-
-static void log_recording(const struct control *control)
-{
-	const struct closing *closing = &control->closing;
-	log_info(control->params.log, "recording ended: %" PRIu64 " frames, %" PRIu64 " dropped, %" PRIu64 " bytes",
-			 closing->stats.frames_written, closing->stats.frames_dropped, closing->stats.bytes_written);
-	if (closing->result < 0)
-		log_error(control->params.log, "recording: %s", closing->error.text);
-}
-
-static void on_closed(void *data, uint32_t events)
-{
-	struct control *control = data;
-	struct closing *closing = &control->closing;
-	uint64_t count;
-	(void)events;
-	if (read(closing->done_fd, &count, sizeof(count)) < 0 || !closing->running)
-		return;
-	pthread_join(closing->thread, NULL);
-	closing->running = false;
-	log_recording(control);
-	json_t *object =
-		json_pack("{s:I, s:I, s:I, s:s}", "frames", (json_int_t)closing->stats.frames_written, "dropped",
-				  (json_int_t)closing->stats.frames_dropped, "bytes", (json_int_t)closing->stats.bytes_written, "error",
-				  closing->result < 0 ? closing->error.text : "");
-	char *text = object ? json_dumps(object, JSON_COMPACT) : NULL;
-	if (control->server)
-		server_reply(control->server, closing->client_id, closing->serial, closing->result, text ? text : "{}");
-	free(text);
-	json_decref(object);
-}
-
-/* Takes the recorder away from the output. */
-static void detach_recorder(struct control *control)
-{
-	output_set_recorder(control->params.output, NULL);
-	control->closing.recorder = control->recorder;
-	control->closing.error.text[0] = 0;
-	control->recorder = NULL;
-	control->recording = false;
-}
-
-static int stop_recording(struct control *control, uint64_t client_id, uint32_t serial)
-{
-	struct closing *closing = &control->closing;
-	detach_recorder(control);
-	closing->client_id = client_id;
-	closing->serial = serial;
-	const int result = pthread_create(&closing->thread, NULL, close_recording, closing);
-	closing->running = result == 0;
-	if (result != 0)
-		recorder_destroy(&closing->recorder, &closing->stats, &closing->error);
-	return -result;
-}
 
 /* ---- life ---- */
 
@@ -162,15 +35,12 @@ struct control *control_create(const struct control_params *params, struct error
 	}
 	control->params = *params;
 	control->start_ns = clock_now(params->clock);
-	control->closing.done_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-	if (control->closing.done_fd >= 0)
-		control->closing.source = loop_add(params->loop, control->closing.done_fd, EPOLLIN, on_closed, control);
-	if (!control->closing.source)
-		error_set(error, -errno, "control: %s", strerror(errno));
-	else if (!*params->settings->record || start_recording(control, params->settings->record, -1, error) == 0)
-		return control;
-	control_destroy(&control);
-	return NULL;
+	const struct capture_params capture = {params->loop,     params->log,    params->clock,
+										   params->settings, params->output, params->closer};
+	control->capture = capture_create(&capture, error);
+	if (!control->capture)
+		control_destroy(&control);
+	return control;
 }
 
 void control_destroy(struct control **control)
@@ -180,19 +50,13 @@ void control_destroy(struct control **control)
 	if (!self)
 		return;
 	self->server = NULL;
-	if (self->closing.running) {
-		pthread_join(self->closing.thread, NULL);
-		log_recording(self);
-	}
-	if (self->recording) {
-		detach_recorder(self);
-		self->closing.result = recorder_destroy(&self->closing.recorder, &self->closing.stats, &self->closing.error);
-		log_recording(self);
-	}
-	loop_remove(&self->closing.source);
-	if (self->closing.done_fd >= 0)
-		close(self->closing.done_fd);
+	capture_destroy(&self->capture);
 	free(self);
+}
+
+struct capture *control_get_capture(struct control *control)
+{
+	return control->capture;
 }
 
 void control_set_server(struct control *control, struct server *server)
@@ -214,25 +78,13 @@ static void reply(struct control *control, const struct request *request, int st
 	server_reply(control->server, request->client_id, request->serial, status, text);
 }
 
-static void add_recording(const struct control *control, json_t *object)
-{
-	struct recorder_stats stats;
-	if (!control->recording)
-		return;
-	recorder_stats(control->recorder, &stats);
-	json_object_set_new(object, "recording",
-						json_pack("{s:I, s:I, s:I, s:s}", "frames", (json_int_t)stats.frames_written, "dropped",
-								  (json_int_t)stats.frames_dropped, "bytes", (json_int_t)stats.bytes_written, "error",
-								  stats.text));
-}
-
 /* Settings of the picture that can change, as they are now. */
 static json_t *changeable_json(const struct settings *settings)
 {
 	json_t *object = json_object();
 	for (const struct option_row *row = option_table(); row->name; row++) {
 		char value[1024];
-		if (!live_can_change(row) || row->group == OPTION_DAEMON)
+		if (live_effect_of(row) != LIVE_NEXT_FRAME)
 			continue;
 		settings_get(settings, row->name, value, sizeof(value));
 		json_object_set_new(object, row->name, json_string(value));
@@ -300,11 +152,13 @@ char *control_status_text(struct control *control)
 		json_object_set_new(object, "clients", json_integer(server_client_count(control->server)));
 		json_object_set_new(object, "streams", server_streams_json(control->server));
 	}
-	if (control->params.lab)
+	if (lab_is_active(control->params.lab))
 		json_object_set_new(object, "lab", lab_status_json(control->params.lab));
 	json_object_set_new(object, "settings", changeable_json(control->params.settings));
 	add_configuration(control, object);
-	add_recording(control, object);
+	json_t *recording = capture_json(control->capture);
+	if (recording)
+		json_object_set_new(object, "recording", recording);
 	char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(12));
 	json_decref(object);
 	return text;
@@ -319,7 +173,7 @@ static void on_status(struct control *control, const struct request *request)
 
 static void on_settings(struct control *control, const struct request *request)
 {
-	char *text = settings_text(control->params.settings, " = ");
+	char *text = capture_settings_text(control->params.settings, " = ");
 	reply(control, request, text ? 0 : ENOMEM, text ? text : "out of memory");
 	free(text);
 }
@@ -348,8 +202,9 @@ static void on_timeline(struct control *control, const struct request *request)
 static void on_latency(struct control *control, const struct request *request)
 {
 	unsigned long long from = 0, count = LATENCY_ROWS;
-	if (!control->params.lab) {
-		reply(control, request, EINVAL, "latency: this daemon keeps no time points; start pursuitd with --latency");
+	if (!lab_is_active(control->params.lab)) {
+		reply(control, request, EINVAL,
+			  "latency: this daemon keeps no time points; start pursuitd with --latency, or: pursuit set latency=yes");
 		return;
 	}
 	if (sscanf(request->arguments, "%llu %llu", &from, &count) < 0 && *request->arguments)
@@ -361,53 +216,36 @@ static void on_latency(struct control *control, const struct request *request)
 	json_decref(object);
 }
 
-/* A pipe or a device could keep the recorder's thread for ever. */
-static const char *unfit_for_recording(int fd)
-{
-	struct stat status;
-	const int flags = fcntl(fd, F_GETFL);
-	if (fd < 0)
-		return "record: there is no file with the request";
-	if (fstat(fd, &status) < 0 || !S_ISREG(status.st_mode))
-		return "record: the file is no regular file";
-	if ((flags & O_ACCMODE) == O_RDONLY || (flags & O_PATH))
-		return "record: the file is not open for writing";
-	return NULL;
-}
-
 static void on_record(struct control *control, const struct request *request)
 {
 	struct error error = {""};
-	const char *unfit = unfit_for_recording(request->fd);
 	if (!server_is_owner(control->server, request->client_id)) {
 		if (request->fd >= 0)
 			close(request->fd);
 		reply(control, request, EPERM, "record: the daemon's own user or root only may record what others show");
 		return;
 	}
-	if (unfit || control->recording || control->closing.running) {
-		if (request->fd >= 0)
-			close(request->fd);
-		reply(control, request, unfit ? EINVAL : EBUSY, unfit ? unfit : "record: a recording is running already");
-		return;
-	}
-	const int result = start_recording(control, NULL, request->fd, &error);
+	const int result = capture_begin(control->capture, request->fd, &error);
 	reply(control, request, result, result < 0 ? error.text : "recording");
+}
+
+static void on_recorded(void *data, uint64_t client_id, uint32_t serial, int result, const char *text)
+{
+	struct control *control = data;
+	if (control->server)
+		server_reply(control->server, client_id, serial, result, text);
 }
 
 static void on_record_stop(struct control *control, const struct request *request)
 {
+	struct error error = {""};
 	if (!server_is_owner(control->server, request->client_id)) {
 		reply(control, request, EPERM, "record-stop: the daemon's own user or root only may end a recording");
 		return;
 	}
-	if (!control->recording) {
-		reply(control, request, EINVAL, "record-stop: nothing is being recorded");
-		return;
-	}
-	const int result = stop_recording(control, request->client_id, request->serial);
+	const int result = capture_end(control->capture, on_recorded, control, request->client_id, request->serial, &error);
 	if (result < 0)
-		reply(control, request, result, "record-stop: no thread to close the file");
+		reply(control, request, result, error.text);
 }
 
 /* "key q", "key escape": as if it had been pressed in the window. */

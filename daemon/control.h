@@ -33,6 +33,7 @@
 
 #include <stdint.h>
 
+#include "daemon/capture.h"
 #include "daemon/clock.h"
 #include "daemon/error.h"
 #include "daemon/live.h"
@@ -54,12 +55,16 @@ struct control_params {
 	struct lab *lab; /* NULL: none */
 	struct live *live;
 	struct reload *reload;
+	struct closer *closer; /* as capture_params says */
 };
 
 /* Starts the recording that the settings ask for. NULL with a sentence. */
 struct control *control_create(const struct control_params *params, struct error *error);
 /* Ends a recording, which waits for the disk. NULL accepted. */
 void control_destroy(struct control **control);
+
+/* What it records with. */
+struct capture *control_get_capture(struct control *control);
 
 /* Where answers go; before the first request. */
 void control_set_server(struct control *control, struct server *server);

@@ -386,6 +386,7 @@ void draw_real(struct render *render, uint64_t now_ns)
 		render->take_again_ns = grid_time(&render->grid, grid_at_or_after(&render->grid, now_ns + 1));
 		return;
 	}
+	draw_take_engine(render);
 	draw_replace_stand_in(render, now_ns);
 	uint64_t vblank = grid_at_or_after(&render->grid, now_ns + render_real_cost(render));
 	if (vblank <= render->real_vblank)

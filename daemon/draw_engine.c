@@ -146,3 +146,32 @@ void draw_replace_stand_in(struct render *render, uint64_t now_ns)
 	if (render->stand_in && now_ns >= render->engine_retry_ns && make_anew(render, now_ns))
 		render->begun = render->report_due = false;
 }
+
+/* ---- another one ---- */
+
+void render_set_engine(struct render *render, struct engine *engine)
+{
+	engine_destroy(&render->other_engine);
+	render->other_engine = engine;
+}
+
+void draw_take_engine(struct render *render)
+{
+	struct error error;
+	if (!render->other_engine)
+		return;
+	draw_count_report(render);
+	draw_keep(render);
+	engine_destroy(&render->engine);
+	render->engine = render->other_engine;
+	render->other_engine = NULL;
+	render->stand_in = render->begun = render->report_due = render->context_shunned = render->through_memory = false;
+	render->engine_made_ns = clock_now(render->clock);
+	render->engine_retry_ns = render->engine_delay_ns = 0;
+	render->real_cost = render->between_cost = render->plain_cost = (struct cost){.count = 0};
+	render->settings_changed = true;
+	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
+	/* In the presenter's context only this thread can make one. */
+	if (render->context && draw_make_engine(render, &error) < 0)
+		log_warning(render->log, "no engine in the context of the presenter: %s", error.text);
+}

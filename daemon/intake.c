@@ -80,6 +80,8 @@ static int map_memory(struct stream *stream, int control_fd, int planes_fd, stru
 	if (planes == MAP_FAILED)
 		return refuse(refusal, -EINVAL, PURSUIT_REFUSED_MEMORY, "planes", (uint64_t)errno,
 					  "planes cannot be mapped for reading: %s", strerror(errno));
+	/* The guard of a strobe's line may be forked later, and must not keep a client's memory. */
+	madvise(planes, stream->planes_bytes, MADV_DONTFORK);
 	stream->planes = planes;
 	return 0;
 }

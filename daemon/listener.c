@@ -173,6 +173,13 @@ int listener_init(struct listener *listener, const char *path, struct error *err
 	return result;
 }
 
+bool listener_is_at(const struct listener *listener, const char *path)
+{
+	struct listener other = {.fd = -1};
+	struct error error;
+	return choose_path(&other, path, &error) == 0 && strcmp(other.path, listener->path) == 0;
+}
+
 void listener_finish(struct listener *listener)
 {
 	char path[128];

@@ -25,6 +25,8 @@ struct listener {
  * and others with a sentence.
  */
 int listener_init(struct listener *listener, const char *path, struct error *error);
+/* Would listener_init() with this path listen where this one does? */
+bool listener_is_at(const struct listener *listener, const char *path);
 /* Closes; removes the socket if listener_init() made it. */
 void listener_finish(struct listener *listener);
 

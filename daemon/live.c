@@ -8,29 +8,32 @@
 
 #include "daemon/setting_check.h"
 
-enum reader {
-	READER_START, /* read once */
-	READER_MAIN,  /* main alone, each time that they matter */
-	READER_RENDER /* the render thread, which has a copy */
-};
-
-static enum reader reader_of(const struct option_row *row)
+enum live_effect live_effect_of(const struct option_row *row)
 {
 	static const char *const mains[] = {
 		"max-clients",  "max-frame-mb", "max-streams",  "max-client-mb",
 		"max-messages", "allow-users",  "allow-groups", "log-level",
 	};
 	if (option_is_of_picture(row) || strcmp(row->name, "on-client-exit") == 0)
-		return READER_RENDER;
+		return LIVE_NEXT_FRAME;
+	if (strcmp(row->name, "seccomp") == 0)
+		return LIVE_ONE_WAY;
 	for (size_t i = 0; i < sizeof(mains) / sizeof(mains[0]); i++)
 		if (strcmp(mains[i], row->name) == 0)
-			return READER_MAIN;
-	return READER_START;
+			return LIVE_AT_ONCE;
+	return LIVE_TAKEN_OVER;
 }
 
-bool live_can_change(const struct option_row *row)
+const char *live_effect_name(enum live_effect effect)
 {
-	return reader_of(row) != READER_START;
+	static const char *const names[] = {"at once", "with the next real frame", "taken over without a pause",
+										"taken over, but not switched off again"};
+	return names[effect];
+}
+
+static bool has_owner(const struct option_row *row)
+{
+	return live_effect_of(row) >= LIVE_TAKEN_OVER;
 }
 
 /* ---- life ---- */
@@ -39,12 +42,18 @@ void live_init(struct live *live, struct settings *settings, struct profiles *pr
 {
 	*live = (struct live){.settings = settings, .log = log, .base = *settings, .profiles = *profiles};
 	live->asked = *settings;
-	*profiles = (struct profiles){NULL, 0};
+	*profiles = (struct profiles){.list = NULL};
 }
 
 void live_finish(struct live *live)
 {
 	profiles_finish(&live->profiles);
+}
+
+void live_add_owner(struct live *live, const struct live_owner *owner)
+{
+	if (live->owner_count < LIVE_OWNERS)
+		live->owners[live->owner_count++] = *owner;
 }
 
 const struct profile *live_profile(const struct live *live)
@@ -80,85 +89,154 @@ static const struct settings *source_of(const struct live *live, const struct op
 	return profile && profile->has[place] ? &profile->values : &live->base;
 }
 
-/* Brings the settings in force up to date. Gives how many changed; *for_render: those that the render thread reads. */
-static unsigned settle(struct live *live, unsigned *for_render)
+/* What the settings are to be. */
+static void compute(const struct live *live, struct settings *fresh)
 {
-	unsigned changed = 0;
-	*for_render = 0;
-	for (const struct option_row *row = option_table(); row->name; row++) {
-		const struct settings *source = source_of(live, row);
-		char before[1024], after[1024];
-		if (!live_can_change(row) || !differ(live->settings, source, row))
-			continue;
-		settings_get(live->settings, row->name, before, sizeof(before));
-		settings_get(source, row->name, after, sizeof(after));
-		copy(live->settings, source, row);
-		log_info(live->log, "%s is %s now, was %s", row->name, *after ? after : "empty", *before ? before : "empty");
-		*for_render += reader_of(row) == READER_RENDER;
-		changed++;
-	}
-	if (live->log)
-		log_set_level(live->log, (enum log_level)live->settings->log_level);
-	return changed;
+	*fresh = *live->settings;
+	for (const struct option_row *row = option_table(); row->name; row++)
+		copy(fresh, source_of(live, row), row);
 }
 
-static unsigned settle_and_tell(struct live *live)
+static unsigned count_changes(const struct settings *a, const struct settings *b, bool (*of)(const struct option_row *))
 {
-	unsigned for_render;
-	const unsigned changed = settle(live, &for_render);
-	if (for_render && live->output)
-		output_set_settings(live->output, live->settings);
-	return changed;
+	unsigned count = 0;
+	for (const struct option_row *row = option_table(); row->name; row++)
+		count += (!of || of(row)) && differ(a, b, row);
+	return count;
 }
 
-static void tell_of_others(const struct live *live, const struct settings *fresh)
+static bool is_of_frames(const struct option_row *row)
+{
+	return live_effect_of(row) == LIVE_NEXT_FRAME;
+}
+
+static void tell_changes(const struct live *live, const struct settings *fresh)
 {
 	for (const struct option_row *row = option_table(); row->name; row++) {
 		char before[1024], after[1024];
-		if (!differ(&live->base, fresh, row))
+		if (!differ(live->settings, fresh, row))
 			continue;
 		settings_get(live->settings, row->name, before, sizeof(before));
 		settings_get(fresh, row->name, after, sizeof(after));
-		if (!live_can_change(row))
-			log_warning(live->log, "%s is %s now; it stays %s until the daemon is restarted", row->name, after, before);
-		else if (live->is_asked[row - option_table()])
-			log_info(live->log, "%s is %s now in the configuration; it stays %s, as `pursuit set` asked for", row->name,
-					 after, before);
+		log_info(live->log, "%s is %s now, was %s", row->name, *after ? after : "empty", *before ? before : "empty");
 	}
 }
 
-unsigned live_reload(struct live *live, const struct settings *fresh, struct profiles *profiles)
+/* ---- owners ---- */
+
+/* Of all, or of none of them. */
+static int prepare(struct live *live, const struct settings *fresh, struct error *error)
 {
-	tell_of_others(live, fresh);
+	for (unsigned i = 0; i < live->owner_count; i++) {
+		const struct live_owner *owner = &live->owners[i];
+		const int result = owner->prepare(owner->data, live->settings, fresh, error);
+		if (result == 0)
+			continue;
+		while (i-- > 0)
+			live->owners[i].abandon(live->owners[i].data);
+		return result;
+	}
+	return 0;
+}
+
+static void commit(struct live *live, const struct settings *fresh)
+{
+	for (unsigned i = 0; i < live->owner_count; i++)
+		live->owners[i].commit(live->owners[i].data, fresh);
+}
+
+/* The settings in force are to be `fresh`. Gives how many changed, or a negative errno with a sentence: then none did.
+ */
+static int take_over(struct live *live, const struct settings *fresh, struct error *error)
+{
+	const unsigned changed = count_changes(live->settings, fresh, NULL);
+	const bool owned = count_changes(live->settings, fresh, has_owner) > 0;
+	const bool of_frames = count_changes(live->settings, fresh, is_of_frames) > 0;
+	const int result = owned ? prepare(live, fresh, error) : 0;
+	if (result < 0)
+		return result;
+	tell_changes(live, fresh);
+	*live->settings = *fresh;
+	if (live->log)
+		log_set_level(live->log, (enum log_level)fresh->log_level);
+	if (owned)
+		commit(live, fresh);
+	if (of_frames && live->output)
+		output_set_settings(live->output, live->settings);
+	return (int)changed;
+}
+
+static int settle(struct live *live, struct error *error)
+{
+	struct settings fresh;
+	compute(live, &fresh);
+	return take_over(live, &fresh, error);
+}
+
+/* ---- the configuration ---- */
+
+static void tell_of_asked(const struct live *live, const struct settings *fresh)
+{
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char before[1024], after[1024];
+		if (!live->is_asked[row - option_table()] || !differ(&live->base, fresh, row))
+			continue;
+		settings_get(live->settings, row->name, before, sizeof(before));
+		settings_get(fresh, row->name, after, sizeof(after));
+		log_info(live->log, "%s is %s now in the configuration; it stays %s, as `pursuit set` asked for", row->name,
+				 after, before);
+	}
+}
+
+static void copy_rows(struct settings *to, const struct settings *from, bool owned)
+{
 	for (const struct option_row *row = option_table(); row->name; row++)
-		if (live_can_change(row))
-			copy(&live->base, fresh, row);
+		if (has_owner(row) == owned)
+			copy(to, from, row);
+}
+
+unsigned live_reload(struct live *live, const struct settings *fresh, struct profiles *profiles, struct error *mistake)
+{
+	const struct settings before = live->base;
+	mistake->text[0] = 0;
+	tell_of_asked(live, fresh);
 	profiles_finish(&live->profiles);
 	live->profiles = *profiles;
-	*profiles = (struct profiles){NULL, 0};
-	return settle_and_tell(live);
+	*profiles = (struct profiles){.list = NULL};
+	copy_rows(&live->base, fresh, false);
+	copy_rows(&live->base, fresh, true);
+	int changed = settle(live, mistake);
+	if (changed >= 0)
+		return (unsigned)changed;
+	log_error(live->log, "%s; what else needs something new stays as it is, too", mistake->text);
+	copy_rows(&live->base, &before, true);
+	struct error error;
+	changed = settle(live, &error);
+	return changed < 0 ? 0 : (unsigned)changed;
 }
 
 const struct settings *live_show(void *data, const char *application)
 {
 	struct live *live = data;
-	unsigned for_render;
+	struct settings fresh;
 	if (strcmp(live->application, application) == 0)
 		return NULL;
 	snprintf(live->application, sizeof(live->application), "%s", application);
 	if (live_profile(live))
 		log_info(live->log, "settings of application %s", application);
-	settle(live, &for_render);
-	return for_render ? live->settings : NULL;
+	compute(live, &fresh);
+	/* A profile holds settings of the picture only; the output takes them together with the stream. */
+	const bool changed = count_changes(live->settings, &fresh, is_of_frames) > 0;
+	tell_changes(live, &fresh);
+	*live->settings = fresh;
+	return changed ? live->settings : NULL;
 }
 
 /* ---- requests ---- */
 
 static int check_right(const struct option_row *row, bool owner, struct error *error)
 {
-	if (!live_can_change(row))
-		return error_set(error, -EINVAL, "%s cannot change while the daemon runs; it needs a restart", row->name);
-	if (!owner && reader_of(row) == READER_MAIN)
+	if (!owner && live_effect_of(row) != LIVE_NEXT_FRAME)
 		return error_set(error, -EPERM, "%s is changed by the daemon's own user or root only", row->name);
 	return 0;
 }
@@ -206,6 +284,21 @@ static int unset_one(struct wish *wish, char *text, struct error *error)
 	return result;
 }
 
+static int take_wish(struct live *live, const struct wish *wish, struct error *error)
+{
+	const struct settings asked = live->asked;
+	bool is_asked[OPTION_ROWS];
+	memcpy(is_asked, live->is_asked, sizeof(is_asked));
+	live->asked = wish->asked;
+	memcpy(live->is_asked, wish->is_asked, sizeof(is_asked));
+	const int result = settle(live, error);
+	if (result >= 0)
+		return 0;
+	live->asked = asked;
+	memcpy(live->is_asked, is_asked, sizeof(is_asked));
+	return result;
+}
+
 static int change(struct live *live, const char *text, bool owner,
 				  int (*one)(struct wish *wish, char *text, struct error *error), struct error *error)
 {
@@ -223,10 +316,7 @@ static int change(struct live *live, const char *text, bool owner,
 		result = one(&wish, word, error);
 	if (result < 0)
 		return result;
-	live->asked = wish.asked;
-	memcpy(live->is_asked, wish.is_asked, sizeof(live->is_asked));
-	settle_and_tell(live);
-	return 0;
+	return take_wish(live, &wish, error);
 }
 
 int live_set(struct live *live, const char *text, bool owner, struct error *error)

@@ -56,16 +56,20 @@ static void on_key(void *data, const struct presenter_key *key)
 static bool can_wait(const struct output *output, const struct presenter_flip *flip)
 {
 	return output->wakes_soon && flip->shown == PRESENTER_KEPT && !flip->late &&
-		   output->flip_count < OUTPUT_FLIPS / 2 && !output->params.lab;
+		   output->flip_count < OUTPUT_FLIPS / 2 && !lab_is_active(output->params.lab);
 }
 
 /* On the presenter's thread. */
 static void on_flip(void *data, const struct presenter *presenter, const struct presenter_flip *flip)
 {
 	struct output *output = data;
-	if (atomic_load(&output->presenter) != presenter)
+	atomic_fetch_add(&output->flipping, 1);
+	const bool in_use = atomic_load(&output->presenter) == presenter;
+	if (in_use)
+		lab_flip(output->params.lab, flip);
+	atomic_fetch_sub(&output->flipping, 1);
+	if (!in_use)
 		return;
-	lab_flip(output->params.lab, flip);
 	pthread_mutex_lock(&output->lock);
 	if (output->flip_count < OUTPUT_FLIPS)
 		output->flips[output->flip_count++] = (struct output_flip){presenter, *flip};
@@ -177,6 +181,8 @@ void output_destroy(struct output **output)
 	pthread_join(self->thread, NULL);
 	for (uint32_t i = 0; i < self->stream_count; i++)
 		stream_release(&self->streams[i]);
+	engine_destroy(&self->wished_engine);
+	output_close_tee(self, self->wished_tee);
 	free_output(self);
 }
 

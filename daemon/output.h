@@ -17,6 +17,7 @@
 #include <stdint.h>
 
 #include "daemon/clock.h"
+#include "daemon/closer.h"
 #include "daemon/error.h"
 #include "daemon/intake.h"
 #include "daemon/lab/lab.h"
@@ -49,10 +50,11 @@ struct output_event {
 
 struct output_params {
 	struct loop *loop;               /* main's */
-	const struct settings *settings; /* must live as long */
+	const struct settings *settings; /* copied */
 	struct clock *clock;
 	const struct log *log;
-	struct lab *lab; /* NULL: none; outlives the output */
+	struct lab *lab;       /* NULL: none; outlives the output */
+	struct closer *closer; /* outlives the output */
 	/*
 	 * On main, before another application ("": none, or not known) comes to be shown: the settings that its frames are
 	 * made with, all of them, or NULL: as before. NULL: never asked.
@@ -108,6 +110,16 @@ bool output_next_event(struct output *output, struct output_event *event);
 /* The engine's settings, governor and level from the next real frame on; checked already (live.h). Others are ignored.
  */
 void output_set_settings(struct output *output, const struct settings *settings);
+/*
+ * All settings, in two steps: makes what the fresh ones need beside what there is (presenter, engine, file of what is
+ * shown), then takes it over, each at the boundary of a frame; or leaves all as it was. A negative errno with a
+ * sentence: it cannot be made, all is as before, and the second step is left out. These wait, for an engine some
+ * seconds; frames that come meanwhile are taken and shown.
+ */
+int output_prepare(struct output *output, const struct settings *now, const struct settings *fresh,
+				   struct error *error);
+void output_commit(struct output *output, const struct settings *fresh);
+void output_abandon(struct output *output);
 /* Switches a part of the view (VIEW_...) on or off. */
 void output_toggle_view(struct output *output, uint32_t part);
 void output_toggle_fullscreen(struct output *output);

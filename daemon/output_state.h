@@ -10,6 +10,7 @@
 
 #include <pthread.h>
 
+#include "daemon/closer.h"
 #include "daemon/display.h"
 #include "daemon/output.h"
 #include "daemon/render.h"
@@ -24,9 +25,11 @@ struct output {
 
 	_Atomic uint64_t beats, rounds;
 	_Atomic(const struct presenter *) presenter; /* in use; flips of others are nobody's */
+	atomic_uint flipping;                        /* presenters' threads that may be telling the lab of a flip */
 	pthread_mutex_t lock;                        /* the mailbox */
 	pthread_cond_t wake;
-	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed;
+	bool stop, woken, streams_changed, presenter_changed, view_changed, settings_changed, tee_changed;
+	bool main_is_busy;
 	bool wakes_soon; /* the render thread, by itself, if nobody wakes it */
 	bool started;    /* the thread has said whether it could start */
 	int start_result;
@@ -39,7 +42,9 @@ struct output {
 		char name[32], display[192]; /* as output_info says */
 	} wished_presenter;
 	uint32_t view;
-	struct settings wished; /* by main, for the render thread */
+	struct settings wished;       /* by main, for the render thread */
+	struct tee *wished_tee;       /* with tee_changed */
+	struct engine *wished_engine; /* NULL: none */
 	struct output_flip {
 		const struct presenter *presenter;
 		struct presenter_flip flip;
@@ -55,6 +60,13 @@ struct output {
 	pthread_mutex_t record_lock;
 	struct recorder *recorder;
 
+	struct output_prepared {
+		bool other_tee;
+		struct tee *tee;       /* NULL: none */
+		struct engine *engine; /* NULL: that which there is */
+		bool display;
+	} prepared; /* main's */
+
 	/* the render thread's own */
 	struct settings settings; /* a copy: some change while it runs */
 	struct settings due;      /* what it becomes next */
@@ -67,6 +79,12 @@ struct output {
 
 /* With the lock: the render thread looks into its mailbox. */
 void output_wake_locked(struct output *output);
+
+/* With the lock: the settings that the next real frames are made with. */
+void output_wish_settings(struct output *output, const struct settings *settings);
+
+/* Any thread: the tee (NULL: none), an output's, is to be closed without anybody waiting for it. */
+void output_close_tee(void *output, struct tee *tee);
 
 /* Any thread: an event for main. */
 void output_push_event(struct output *output, const struct output_event *event);

@@ -8,8 +8,7 @@
 
 #include "daemon/output_state.h"
 
-/* With the lock. */
-static void take_wishes(struct output *output, const struct settings *settings)
+void output_wish_settings(struct output *output, const struct settings *settings)
 {
 	output->wished = *settings;
 	snprintf(output->info.method, sizeof(output->info.method), "%s", settings->method);
@@ -31,7 +30,7 @@ static const struct settings *settings_for(const struct output *output, const st
 static void streams_have_changed(struct output *output, const struct settings *settings)
 {
 	if (settings)
-		take_wishes(output, settings);
+		output_wish_settings(output, settings);
 	for (uint32_t i = 0; i < output->stream_count; i++)
 		__atomic_store_n(&output->streams[i]->control->background, i + 1 < output->stream_count, __ATOMIC_RELEASE);
 	output->streams_changed = true;
@@ -101,7 +100,7 @@ void output_remove_stream(struct output *output, struct stream *stream)
 void output_set_settings(struct output *output, const struct settings *settings)
 {
 	pthread_mutex_lock(&output->lock);
-	take_wishes(output, settings);
+	output_wish_settings(output, settings);
 	output_wake_locked(output);
 	pthread_mutex_unlock(&output->lock);
 }

@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include <errno.h>
+#include <sched.h>
 #include <string.h>
 #include <sys/prctl.h>
 #include <time.h>
@@ -11,6 +12,7 @@
 
 /* What waits for so long hurts nobody. */
 #define SOON_NS UINT64_C(50000000)
+#define LOOK_NS UINT64_C(2000000)
 
 /* ---- called by the render thread's work ---- */
 
@@ -59,17 +61,22 @@ static void publish_stats(struct output *output)
 	pthread_mutex_unlock(&output->stats_lock);
 }
 
-/* Sleeps until time_ns or until woken. What it would not read soon it does not sleep over. */
+/*
+ * Sleeps until time_ns or until woken; while main is busy not for long, since it wakes nobody then. What it would not
+ * read soon it does not sleep over.
+ */
 static void wait_for_work(struct output *output, uint64_t time_ns)
 {
-	const bool soon = time_ns < clock_now(output->params.clock) + SOON_NS;
-	const struct timespec then = {(time_t)(time_ns / UINT64_C(1000000000)), (long)(time_ns % UINT64_C(1000000000))};
+	const uint64_t now_ns = clock_now(output->params.clock);
+	const bool soon = time_ns < now_ns + SOON_NS;
 	pthread_mutex_lock(&output->lock);
+	const uint64_t end_ns = output->main_is_busy && now_ns + LOOK_NS < time_ns ? now_ns + LOOK_NS : time_ns;
+	const struct timespec end = {(time_t)(end_ns / UINT64_C(1000000000)), (long)(end_ns % UINT64_C(1000000000))};
 	output->wakes_soon = soon;
 	while (!output->woken && !output->stop && (soon || output->flip_count == 0)) {
-		if (time_ns == RENDER_NEVER)
+		if (end_ns == RENDER_NEVER)
 			pthread_cond_wait(&output->wake, &output->lock);
-		else if (pthread_cond_timedwait(&output->wake, &output->lock, &then) == ETIMEDOUT)
+		else if (pthread_cond_timedwait(&output->wake, &output->lock, &end) == ETIMEDOUT)
 			break;
 	}
 	pthread_mutex_unlock(&output->lock);
@@ -132,6 +139,9 @@ static void change_presenter(struct output *output)
 	if (!render_go_over(&output->render))
 		return;
 	atomic_store(&output->presenter, output->render.presenter);
+	/* The lab takes flips from one thread at a time. */
+	while (atomic_load(&output->flipping) > 0)
+		sched_yield();
 	tell_presenter(output, &output->coming);
 	if (had_one)
 		display_let_go(output->display);
@@ -139,17 +149,22 @@ static void change_presenter(struct output *output)
 
 /* What main wants to be different; the settings are in output->due. */
 struct wishes {
-	bool new_view, new_settings;
+	bool new_view, new_settings, new_tee;
 	uint32_t view;
+	struct tee *tee;
+	struct engine *engine; /* NULL: that which there is */
 };
 
 /* With the lock, the one that streams are taken with: theirs and their settings go together. */
 static struct wishes take_wishes_over(struct output *output)
 {
-	const struct wishes wishes = {output->view_changed, output->settings_changed, output->view};
+	const struct wishes wishes = {output->view_changed, output->settings_changed, output->tee_changed,
+								  output->view,         output->wished_tee,       output->wished_engine};
 	if (wishes.new_settings)
 		output->due = output->wished;
-	output->view_changed = output->settings_changed = false;
+	output->view_changed = output->settings_changed = output->tee_changed = false;
+	output->wished_tee = NULL;
+	output->wished_engine = NULL;
 	return wishes;
 }
 
@@ -159,6 +174,10 @@ static void grant(struct output *output, const struct wishes *wishes)
 		render_set_view(&output->render, wishes->view);
 	if (wishes->new_settings)
 		render_set_settings(&output->render, &output->due);
+	if (wishes->new_tee)
+		render_set_tee(&output->render, wishes->tee);
+	if (wishes->engine)
+		render_set_engine(&output->render, wishes->engine);
 }
 
 /* Empties the mailbox. False: stop. */
@@ -203,7 +222,7 @@ static int start(struct output *output)
 		.log = output->params.log,
 		.stats = &output->stats,
 		.lab = output->params.lab,
-		.owner = {output, record, report, engine_made},
+		.owner = {output, record, report, engine_made, output_close_tee},
 	};
 	governor_init(&output->render.governor, output->params.settings->governor == 0, output->params.settings->level);
 	output->stats.governor = output->render.governor;

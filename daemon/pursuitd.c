@@ -12,11 +12,9 @@
 #include <unistd.h>
 
 #include "daemon/arguments.h"
-#include "daemon/aside.h"
 #include "daemon/clock.h"
 #include "daemon/control.h"
 #include "daemon/keyboard.h"
-#include "daemon/lab/chip.h"
 #include "daemon/lab/lab.h"
 #include "daemon/live.h"
 #include "daemon/log.h"
@@ -24,6 +22,7 @@
 #include "daemon/notify.h"
 #include "daemon/options.h"
 #include "daemon/output.h"
+#include "daemon/owners.h"
 #include "daemon/present/presenter.h"
 #include "daemon/present/x_mode_guard.h"
 #include "daemon/reload.h"
@@ -39,7 +38,9 @@ struct pursuitd {
 	struct log log;
 	struct clock clock;
 	struct loop *loop;
-	struct lab *lab; /* NULL unless an option of the lab is set */
+	struct lab *lab;
+	struct closer *closer;
+	struct owners owners;
 	struct output *output;
 	struct live live;
 	struct reload reload;
@@ -153,51 +154,6 @@ static void raise_priority(const struct log *log)
 		log_debug(log, "running at ordinary priority (%s)", strerror(errno));
 }
 
-/* What earlier runs wrote under the names that this one is given. */
-static int keep_files(const struct pursuitd *daemon, struct error *error)
-{
-	const struct settings *settings = &daemon->settings;
-	const bool is_video = *settings->tee && !strchr(settings->tee, '%');
-	char times[sizeof(settings->tee) + 8];
-	snprintf(times, sizeof(times), "%s.csv", settings->tee);
-	int result = aside_put("latency-log", settings->lab.latency_log, &daemon->log, error);
-	if (result == 0)
-		result = aside_put("record", settings->record, &daemon->log, error);
-	if (result == 0 && is_video)
-		result = aside_put("tee", settings->tee, &daemon->log, error);
-	if (result == 0 && is_video)
-		result = aside_put("tee", times, &daemon->log, error);
-	return result;
-}
-
-/* What tells how a latency log came to be. */
-static int start_lab(struct pursuitd *daemon, struct error *error)
-{
-	const struct settings *settings = &daemon->settings;
-	char *header = NULL;
-	size_t size = 0;
-	FILE *out = open_memstream(&header, &size);
-	if (!out)
-		return error_set(error, -ENOMEM, "lab: out of memory");
-	fprintf(out, "program: pursuitd %s\ngpio library: %s\n", PURSUITD_VERSION, chip_library());
-	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
-		settings_get(settings, row->name, value, sizeof(value));
-		fprintf(out, "setting %s = %s\n", row->name, value);
-	}
-	fclose(out);
-	const struct lab_params params = {
-		.settings = &settings->lab,
-		.clock = &daemon->clock,
-		.log = &daemon->log,
-		.period_ns = 1e9 * (double)settings->refresh_denominator / (double)settings->refresh_numerator,
-		.header = header,
-	};
-	daemon->lab = lab_create(&params, error);
-	free(header);
-	return daemon->lab ? 0 : -1;
-}
-
 /* A presenter on a console of its own reads these from a descriptor (kms_console.h); no thread exists yet. */
 static void block_console_signals(void)
 {
@@ -219,19 +175,22 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->loop = loop_create(error);
 	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)
 		return -1;
-	if (keep_files(daemon, error) < 0)
+	if (owners_keep_files(NULL, &daemon->settings, &daemon->log, error) < 0)
 		return -1;
 	/* Before any thread: it may fork. */
-	if (lab_is_wanted(&daemon->settings.lab) && start_lab(daemon, error) < 0)
+	daemon->lab = owners_create_lab(&daemon->settings, &daemon->clock, &daemon->log, error);
+	daemon->closer = closer_create(error);
+	if (!daemon->lab || !daemon->closer)
 		return -1;
 	const struct output_params output_params = {daemon->loop, &daemon->settings, &daemon->clock, &daemon->log,
-												daemon->lab,  live_show,         &daemon->live};
+												daemon->lab,  daemon->closer,    live_show,      &daemon->live};
 	daemon->output = output_create(&output_params, error);
 	if (!daemon->output)
 		return -1;
 	daemon->live.output = daemon->output;
-	const struct control_params control_params = {daemon->loop,   &daemon->log, &daemon->clock, &daemon->settings,
-												  daemon->output, daemon->lab,  &daemon->live,  &daemon->reload};
+	const struct control_params control_params = {daemon->loop,      &daemon->log,    &daemon->clock,
+												  &daemon->settings, daemon->output,  daemon->lab,
+												  &daemon->live,     &daemon->reload, daemon->closer};
 	daemon->control = control_create(&control_params, error);
 	if (!daemon->control)
 		return -1;
@@ -245,6 +204,13 @@ static int start(struct pursuitd *daemon, struct error *error)
 		return -1;
 	control_set_server(daemon->control, daemon->server);
 	daemon->keyboard.server = daemon->server;
+	daemon->owners = (struct owners){.server = daemon->server,
+									 .capture = control_get_capture(daemon->control),
+									 .lab = daemon->lab,
+									 .output = daemon->output,
+									 .log = &daemon->log,
+									 .closer = daemon->closer};
+	owners_add(&daemon->live, &daemon->owners);
 	reload_watch(&daemon->reload, daemon->loop);
 	if (watchdog_create(&daemon->watchdog, daemon->loop, &daemon->log, daemon->output, error) < 0)
 		return -1;
@@ -304,6 +270,7 @@ static void stop(struct pursuitd *daemon)
 	server_destroy(&daemon->server);
 	control_destroy(&daemon->control);
 	output_destroy(&daemon->output);
+	closer_destroy(&daemon->closer);
 	lab_destroy(&daemon->lab);
 	reload_finish(&daemon->reload);
 	live_finish(&daemon->live);

@@ -43,11 +43,43 @@ int render_start(struct render *render, struct error *error)
 
 void render_finish(struct render *render)
 {
+	tee_destroy(&render->last_tee.tee);
 	tee_destroy(&render->tee);
+	engine_destroy(&render->other_engine);
 	engine_destroy(&render->engine);
 	draw_forget_kept(render);
 	view_finish(&render->view);
 	showing_finish(&render->showing);
+}
+
+/* What it was given is over. */
+static void close_last_tee(struct render *render)
+{
+	if (render->last_tee.tee)
+		render->owner.close_tee(render->owner.data, render->last_tee.tee);
+	render->last_tee.tee = NULL;
+}
+
+void render_set_tee(struct render *render, struct tee *tee)
+{
+	close_last_tee(render);
+	render->last_tee.tee = render->tee;
+	render->last_tee.group = render->group;
+	render->last_tee.serial = render->serial;
+	render->tee = tee;
+	render->redraw |= tee != NULL; /* a picture that stays is its first one */
+	if (render->paused)
+		close_last_tee(render);
+}
+
+static void tell_tees(struct render *render, const struct presenter_flip *flip)
+{
+	if (flip->group > render->last_tee.group)
+		close_last_tee(render);
+	/* What was drawn before a tee came is not its. */
+	struct tee *tee = flip->serial <= render->last_tee.serial ? render->last_tee.tee : render->tee;
+	if (tee)
+		tee_flip(tee, flip, &render->grid);
 }
 
 static void close_all_frames(struct render *render)
@@ -88,7 +120,7 @@ static bool may_go_over(const struct render *render)
 	return !showing_has_unshown(&render->showing) && (render->paused || has_new_frame(render));
 }
 
-static void set_presenter(struct render *render, struct presenter *presenter)
+void render_set_presenter(struct render *render, struct presenter *presenter)
 {
 	close_all_frames(render);
 	showing_finish(&render->showing);
@@ -118,7 +150,7 @@ bool render_go_over(struct render *render)
 	if (!render->next.wished || !may_go_over(render))
 		return false;
 	render->next.wished = false;
-	set_presenter(render, render->next.presenter);
+	render_set_presenter(render, render->next.presenter);
 	return true;
 }
 
@@ -236,9 +268,8 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 		return;
 	render->unanswered.pictures = 0;
 	showing_flip(&render->showing, flip);
-	if (render->tee)
-		tee_flip(render->tee, flip, &render->grid);
-	if (render->lab)
+	tell_tees(render, flip);
+	if (lab_is_active(render->lab))
 		tell_lab(render, flip);
 }
 
@@ -351,6 +382,7 @@ static void fall_asleep(struct render *render)
 	render->presenter->impl->pause(render->presenter);
 	render->showing.last_target_ns = 0;
 	render->paused = true;
+	close_last_tee(render);
 }
 
 /* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */
@@ -498,6 +530,12 @@ static uint64_t step(struct render *render)
 		if (render->stream && !atomic_load(&render->stream->ended))
 			render_skip_frames(render, render->stream);
 		return RENDER_NEVER;
+	}
+	/* A stream that moves takes it with its next frame. */
+	if (render->other_engine && render->paused) {
+		draw_take_engine(render);
+		want_held(render);
+		render->redraw = true;
 	}
 	const bool lost = !render->engine;
 	if (!draw_revive_engine(render, now_ns))

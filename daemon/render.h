@@ -38,6 +38,7 @@ struct render_owner {
 	void (*record)(void *data, const struct frame *frame);
 	void (*report)(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal);
 	void (*engine_made)(void *data, const struct engine_info *info);
+	void (*close_tee)(void *data, struct tee *tee); /* takes it; nobody waits */
 };
 
 struct render {
@@ -46,6 +47,7 @@ struct render {
 	const struct log *log;
 	struct render_owner owner;
 	struct engine *engine;
+	struct engine *other_engine;               /* to be used from the next real frame on; NULL: none */
 	bool stand_in;                             /* it is one on the CPU, in place of one that was lost */
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
 	uint64_t engine_made_ns;
@@ -66,7 +68,11 @@ struct render {
 	struct showing showing;
 	struct lab *lab; /* NULL: none */
 	struct view view;
-	struct tee *tee;       /* NULL: none */
+	struct tee *tee; /* NULL: none */
+	struct {
+		struct tee *tee; /* the one before, which has pictures that are not over yet; NULL: none */
+		uint64_t group, serial;
+	} last_tee;
 	bool settings_changed; /* the engine does not know yet */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
 	bool show_held;        /* `frame`, which the stream still lends, is due once more, unless a newer one comes first */
@@ -115,9 +121,11 @@ int render_start(struct render *render, struct error *error);
 void render_finish(struct render *render);
 
 /*
- * Presents there soon, beginning anew; with NULL (the display is lost) frames are taken and answered with REPLACED
- * until there is one again. No real frame is begun until then. at_once: the one in use is of no use any more.
+ * Presents there from now on, beginning anew; with NULL (the display is lost) frames are taken and answered with
+ * REPLACED until there is one again.
  */
+void render_set_presenter(struct render *render, struct presenter *presenter);
+/* The same soon; no real frame is begun until then. at_once: the one in use is of no use any more. */
 void render_wish_presenter(struct render *render, struct presenter *presenter, bool at_once);
 /*
  * Goes over to the one wished for: at the boundary of a frame, when each real frame that was given to the one in use
@@ -129,6 +137,10 @@ bool render_go_over(struct render *render);
 void render_set_view(struct render *render, uint32_t switches);
 /* The next real frames are made with these; checked already. */
 void render_set_settings(struct render *render, const struct settings *settings);
+/* What is drawn from now on goes there (NULL: nowhere), what was drawn before to the one before. Takes it. */
+void render_set_tee(struct render *render, struct tee *tee);
+/* The next real frame is the first that is made with it. Takes it; it is on no thread. */
+void render_set_engine(struct render *render, struct engine *engine);
 /* Takes over the presenter's grid as it is now. Has it changed? */
 bool render_follow_grid(struct render *render);
 
@@ -207,6 +219,8 @@ bool draw_is_lost(const struct render *render, int result);
 void draw_lose_engine(struct render *render, int result, const char *why);
 /* Makes a lost engine anew, if there is none at all, when its time has come. Is there one? */
 bool draw_revive_engine(struct render *render, uint64_t now_ns);
+/* Between two frames: the engine that render_set_engine() gave, if any, in place of the one that there is. */
+void draw_take_engine(struct render *render);
 /* Before a frame is begun: the real engine again in place of the one that stands in, when its time has come. */
 void draw_replace_stand_in(struct render *render, uint64_t now_ns);
 

@@ -22,8 +22,8 @@
 
 struct server {
 	struct server_params params;
-	struct listener listener;
-	struct loop_source *accept_source, *event_source;
+	struct listener listener, prepared; /* prepared.fd -1: it stays */
+	struct loop_source *accept_source, *event_source, *prepared_source;
 	int reserve_fd; /* given up for a moment when there are no file descriptors left */
 	struct client *clients;
 	uint32_t client_count;
@@ -221,7 +221,7 @@ struct server *server_create(const struct server_params *params, struct error *e
 	server->params = *params;
 	server->next_id = 1;
 	server->reserve_fd = -1;
-	server->listener.fd = server->listener.lock_fd = -1;
+	server->listener.fd = server->listener.lock_fd = server->prepared.fd = server->prepared.lock_fd = -1;
 	if (start(server, error) < 0)
 		server_destroy(&server);
 	return server;
@@ -247,6 +247,49 @@ void server_destroy(struct server **server)
 		close(self->reserve_fd);
 	free(self->packet);
 	free(self);
+}
+
+/* ---- another socket ---- */
+
+int server_prepare(struct server *server, const char *path, struct error *error)
+{
+	if (listener_is_at(&server->listener, path))
+		return 0;
+	if (server->listener.lock_fd < 0)
+		return error_set(error, -EBUSY,
+						 "socket: %s is the service manager's, which opened it; its path is ListenSequentialPacket= of "
+						 "the socket unit",
+						 server->listener.path);
+	int result = listener_init(&server->prepared, path, error);
+	if (result == 0)
+		server->prepared_source = loop_add(server->params.loop, server->prepared.fd, EPOLLIN, on_accept, server);
+	if (result == 0 && !server->prepared_source) {
+		result = error_set(error, -ENOMEM, "socket: out of memory");
+		listener_finish(&server->prepared);
+	}
+	return result;
+}
+
+void server_commit(struct server *server)
+{
+	if (server->prepared.fd < 0)
+		return;
+	/* Who has come there already. */
+	for (int i = 0; i < 4; i++)
+		on_accept(server, EPOLLIN);
+	loop_remove(&server->accept_source);
+	listener_finish(&server->listener);
+	server->listener = server->prepared;
+	server->accept_source = server->prepared_source;
+	server->prepared.fd = server->prepared.lock_fd = -1;
+	server->prepared_source = NULL;
+	log_info(server->params.log, "listening at %s", server->listener.path);
+}
+
+void server_abandon(struct server *server)
+{
+	loop_remove(&server->prepared_source);
+	listener_finish(&server->prepared);
 }
 
 const char *server_path(const struct server *server)

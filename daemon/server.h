@@ -46,6 +46,15 @@ struct server *server_create(const struct server_params *params, struct error *e
 /* Tells every client SHUTDOWN and closes; the socket is removed. NULL accepted. */
 void server_destroy(struct server **server);
 
+/*
+ * Another path of the socket, in two steps: listens there, too; then there alone, or as before. Clients stay, and
+ * whoever has connected to the old path is let in. A negative errno with a sentence: nothing was changed, and the
+ * second step is left out.
+ */
+int server_prepare(struct server *server, const char *path, struct error *error);
+void server_commit(struct server *server);
+void server_abandon(struct server *server);
+
 const char *server_path(const struct server *server);
 
 /*

@@ -56,13 +56,14 @@ int verb_set(int argc, char **argv)
 		.usage = "NAME=VALUE... | --undo NAME...",
 		.summary =
 			"Changes settings of the running daemon, all of those given or none of them; those of the picture from\n"
-			"the next real frame on. Which client is shown changes with focus=CLIENT, alone. Settings that cannot\n"
-			"change while the daemon runs are refused. What is set goes before the configuration file and the "
-			"profiles\n"
-			"of applications, until it is taken back or the daemon ends.",
+			"the next real frame on. What others need (a window, a file, a socket) is made beside what there is and\n"
+			"then takes over; if it cannot be made all stays as it was. Which client is shown changes with\n"
+			"focus=CLIENT, alone. What is set goes before the configuration file and the profiles of applications,\n"
+			"until it is taken back or the daemon ends.",
 		.examples = "  pursuit set method=grid\n"
 					"  pursuit set blur=everywhere cell=16\n"
 					"  pursuit set governor=off level=0\n"
+					"  pursuit set present=glfw,headless refresh=60\n"
 					"  pursuit set --undo blur cell\n"
 					"  pursuit set focus='the game'\n",
 		.rows = rows,

@@ -84,6 +84,11 @@ void engine_destroy(struct engine **engine)
 	*engine = NULL;
 }
 
+void engine_leave(struct engine *engine)
+{
+	engine->executor->ops->leave(engine->executor);
+}
+
 const struct engine_info *engine_get_info(const struct engine *engine)
 {
 	return &engine->executor->info;

@@ -5,7 +5,7 @@
  * The engine: real frames in, displayed frames out, a report of what ran.
  * The only header of engine/ that the rest of the daemon includes.
  *
- * One engine lives on one thread at a time, which must be the one that made it
+ * One engine lives on one thread at a time: the one that made it, until engine_leave()
  * (it may own a GL context, which is current on the thread after each call: who
  * draws there with another context makes that one current again). Nothing in it is irreplaceable: it can be destroyed
  * and made anew at any moment.
@@ -184,7 +184,10 @@ const struct engine_method_info *engine_methods(void);
 
 /* Makes context and engine, compiles what every frame needs. NULL with a sentence. */
 struct engine *engine_create(const struct engine_params *params, struct error *error);
+/* NULL accepted. */
 void engine_destroy(struct engine **engine);
+/* It may live on another thread from now on: that which calls the next function. */
+void engine_leave(struct engine *engine);
 
 const struct engine_info *engine_get_info(const struct engine *engine);
 

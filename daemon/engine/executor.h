@@ -66,6 +66,8 @@ struct executor_ops {
 	const struct pass *passes[PASS_COUNT];
 	/* Once before each engine_begin() and engine_render(). 0, or -EIO with a sentence: all is lost. */
 	int (*enter)(struct executor *executor, struct error *error);
+	/* Leaves the thread; the next call may come on another one. */
+	void (*leave)(struct executor *executor);
 	void (*destroy)(struct executor **executor);
 	/* Before engine_begin() returns, whatever it returns: nothing reads the frame's planes any more. */
 	void (*release_planes)(struct engine *engine);

@@ -20,7 +20,10 @@ struct guard {
 	int fd; /* the daemon's end of a pipe */
 };
 
-/* Forks; to be called while there is one thread. The params' strings need not live on. 0 or -errno with a sentence. */
+/*
+ * Forks; at the start while there is one thread, which costs least. The params' strings need not live on. 0 or -errno
+ * with a sentence.
+ */
 int guard_start(struct guard *guard, const struct chip_params *params, struct error *error);
 /* The line was left in good order. */
 void guard_dismiss(struct guard *guard);

@@ -11,36 +11,48 @@
 /* An edge is read so much later than it was, at most. */
 #define TRIGGER_HOLD_NS UINT64_C(10000000)
 
-static struct lines input(const struct lab *lab, const char *line, const char *option, bool active_low)
+struct lines inputs_line(const struct lab *lab, const struct lab_settings *settings, unsigned which)
 {
+	const struct {
+		const char *line, *option;
+		bool active_low;
+	} inputs[] = {
+		{settings->photodiode_line, "photodiode-line", settings->photodiode_active_low},
+		{settings->trigger_line, "trigger-line", settings->trigger_active_low},
+		{settings->vsync_line, "vsync-line", false},
+	};
 	return (struct lines){
-		.params = {.chip = lab->settings->gpio_chip,
-				   .lines = line,
-				   .option = option,
+		.params = {.chip = settings->gpio_chip,
+				   .lines = inputs[which].line,
+				   .option = inputs[which].option,
 				   .input = true,
-				   .active_low = active_low},
+				   .active_low = inputs[which].active_low},
 		.log = lab->params.log,
-		.wanted = *line != '\0',
+		.wanted = *inputs[which].line != '\0',
 	};
 }
 
 void inputs_init(struct lab *lab)
 {
-	const struct lab_settings *settings = lab->settings;
-	lab->photodiode = input(lab, settings->photodiode_line, "photodiode-line", settings->photodiode_active_low);
-	lab->trigger = input(lab, settings->trigger_line, "trigger-line", settings->trigger_active_low);
-	lab->vsync_lines = input(lab, settings->vsync_line, "vsync-line", false);
-	lab->match.least_ns = (uint64_t)settings->photon_least_us * 1000;
-	lab->match.debounce_ns = (uint64_t)settings->debounce_us * 1000;
+	lab->photodiode = inputs_line(lab, &lab->settings, 0);
+	lab->trigger = inputs_line(lab, &lab->settings, 1);
+	lab->vsync_lines = inputs_line(lab, &lab->settings, 2);
+	inputs_change(lab);
+}
+
+void inputs_change(struct lab *lab)
+{
+	lab->match.least_ns = (uint64_t)lab->settings.photon_least_us * 1000;
+	lab->match.debounce_ns = (uint64_t)lab->settings.debounce_us * 1000;
 	lab->rows.hold_ns = lab->trigger.wanted ? TRIGGER_HOLD_NS : 0;
 }
 
 /* An alternating patch tells two neighbours apart by direction; without a patch any edge may be any flip's. */
 static uint64_t window_end(const struct lab *lab)
 {
-	if (lab->settings->photon_most_us)
-		return (uint64_t)lab->settings->photon_most_us * 1000;
-	const double periods = lab->settings->patch == LAB_PATCH_OFF ? 1.0 : 2.0;
+	if (lab->settings.photon_most_us)
+		return (uint64_t)lab->settings.photon_most_us * 1000;
+	const double periods = lab->settings.patch == LAB_PATCH_OFF ? 1.0 : 2.0;
 	return lab->match.least_ns + (uint64_t)(periods * lab->period_ns);
 }
 
@@ -51,7 +63,7 @@ void inputs_flip(struct lab *lab, struct row *row, bool changed)
 	lab->trigger.readable = true;
 	if (!lab->photodiode.chip)
 		return;
-	if (lab->settings->patch != LAB_PATCH_OFF)
+	if (lab->settings.patch != LAB_PATCH_OFF)
 		want = !changed ? MATCH_NONE : row->points.level ? MATCH_RISING : MATCH_FALLING;
 	lab->match.most_ns = window_end(lab);
 	row->photon_open = true;
@@ -87,7 +99,7 @@ static void give_triggers(struct lab *lab)
 
 static void take_vsync(struct lab *lab, const struct chip_edge *edge)
 {
-	if (edge->rising == (lab->settings->vsync_edge == 0))
+	if (edge->rising == (lab->settings.vsync_edge == 0))
 		vsync_add_edge(lab->vsync, edge->time_ns);
 }
 
@@ -110,7 +122,7 @@ static void read_line(struct lab *lab, struct lines *lines, uint64_t now_ns,
 static void check_vsync(struct lab *lab, uint64_t now_ns)
 {
 	char sentence[VSYNC_SENTENCE];
-	if (!lab->vsync || !vsync_check(lab->vsync, now_ns, sentence))
+	if (!lab->vsync_lines.wanted || !vsync_check(lab->vsync, now_ns, sentence))
 		return;
 	if (vsync_get_counts(lab->vsync).state == VSYNC_TRUSTED)
 		log_info(lab->params.log, "%s", sentence);
@@ -127,7 +139,7 @@ static void settle(struct lab *lab, uint64_t now_ns)
 			continue;
 		row->photon_open = false;
 		row->points.time[POINT_PHOTON] = result.edge_ns;
-		row->points.photon_lost = result.fate == MATCH_LOST && lab->settings->patch != LAB_PATCH_OFF;
+		row->points.photon_lost = result.fate == MATCH_LOST && lab->settings.patch != LAB_PATCH_OFF;
 	}
 }
 
@@ -155,7 +167,7 @@ uint64_t inputs_next(const struct lab *lab)
 {
 	uint64_t next =
 		earlier(lines_next(&lab->vsync_lines), earlier(lines_next(&lab->photodiode), lines_next(&lab->trigger)));
-	if (lab->vsync)
+	if (lab->vsync_lines.wanted)
 		next = earlier(next, vsync_next(lab->vsync));
 	if (lab->match.flip_count > 0)
 		next = earlier(next, lab->match.flips[0].flip_ns + lab->match.most_ns + HOLD_NS);

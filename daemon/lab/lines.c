@@ -21,6 +21,15 @@ static void wait_longer(struct lines *lines, uint64_t now_ns)
 	lines->failures++;
 }
 
+/* They are there. */
+static void tell(struct lines *lines, uint64_t now_ns)
+{
+	snprintf(lines->text, sizeof(lines->text), "%s %.128s", chip_text(lines->chip), lines->params.lines);
+	log_info(lines->log, "%s: %s", lines->params.option, lines->text);
+	lines->delay_ns = 0;
+	lines->check_ns = now_ns + CHECK_DELAY;
+}
+
 bool lines_revive(struct lines *lines, uint64_t now_ns)
 {
 	struct error error = {""};
@@ -34,11 +43,15 @@ bool lines_revive(struct lines *lines, uint64_t now_ns)
 		snprintf(lines->text, sizeof(lines->text), "%.*s", (int)sizeof(lines->text) - 1, error.text);
 		return false;
 	}
-	snprintf(lines->text, sizeof(lines->text), "%s %.128s", chip_text(lines->chip), lines->params.lines);
-	log_info(lines->log, "%s: %s", lines->params.option, lines->text);
-	lines->delay_ns = 0;
-	lines->check_ns = now_ns + CHECK_DELAY;
+	tell(lines, now_ns);
 	return true;
+}
+
+void lines_adopt(struct lines *lines, struct chip *chip, uint64_t now_ns)
+{
+	lines->chip = chip;
+	if (chip)
+		tell(lines, now_ns);
 }
 
 void lines_lose(struct lines *lines, int code, uint64_t now_ns)

@@ -30,6 +30,8 @@ struct lines {
 
 /* Tries to open them if they are wanted, missing and due. True: they are newly there. */
 bool lines_revive(struct lines *lines, uint64_t now_ns);
+/* This chip, just opened with the params, is theirs from now on (NULL: to be tried). */
+void lines_adopt(struct lines *lines, struct chip *chip, uint64_t now_ns);
 /* They failed with this errno: closed, to be tried again. */
 void lines_lose(struct lines *lines, int code, uint64_t now_ns);
 /* When lines_revive() or lines_check() has something to do; UINT64_MAX never. */

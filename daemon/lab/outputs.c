@@ -7,37 +7,35 @@
 /* A pulse that lasts into the next refresh would swallow the next edge. */
 #define PULSE_PERIODS 0.5
 
-static void set_up_marker(struct lab *lab)
+static uint32_t count_lines(const struct lab_settings *settings)
 {
-	const struct lab_settings *settings = lab->settings;
 	struct error error;
-	const bool wanted = *settings->gpio_line != '\0';
-	const int count = wanted ? chip_count_lines(settings->gpio_chip, settings->gpio_line, "gpio-line", &error) : 1;
-	const uint32_t all = (1u << (count > 0 ? count : 1)) - 1;
-	lab->levels = settings->initial_level ? all : 0;
-	lab->pattern = (struct pattern){
-		.kind = (enum pattern_kind)settings->pattern,
-		.lines = (uint32_t)(count > 0 ? count : 1),
-		.pulse_ns = (uint64_t)settings->pulse_us * 1000,
-		.offset_ns = (uint64_t)settings->offset_us * 1000,
-		.levels = lab->levels,
-	};
-	lab->marker = (struct lines){
+	const int count =
+		*settings->gpio_line ? chip_count_lines(settings->gpio_chip, settings->gpio_line, "gpio-line", &error) : 1;
+	return count > 0 ? (uint32_t)count : 1;
+}
+
+static uint32_t initial_levels(const struct lab_settings *settings)
+{
+	return settings->initial_level ? (1u << count_lines(settings)) - 1 : 0;
+}
+
+struct lines outputs_marker(const struct lab *lab, const struct lab_settings *settings)
+{
+	return (struct lines){
 		.params = {.chip = settings->gpio_chip,
 				   .lines = settings->gpio_line,
 				   .option = "gpio-line",
 				   .active_low = settings->active_low,
-				   .levels = lab->levels},
+				   .levels = initial_levels(settings)},
 		.log = lab->params.log,
-		.wanted = wanted,
+		.wanted = *settings->gpio_line != '\0',
 	};
 }
 
-void outputs_init(struct lab *lab)
+struct lines outputs_strobe(const struct lab *lab, const struct lab_settings *settings)
 {
-	const struct lab_settings *settings = lab->settings;
-	set_up_marker(lab);
-	lab->strobe_lines = (struct lines){
+	return (struct lines){
 		.params = {.chip = settings->gpio_chip,
 				   .lines = settings->strobe_line,
 				   .option = "strobe-line",
@@ -45,8 +43,32 @@ void outputs_init(struct lab *lab)
 		.log = lab->params.log,
 		.wanted = *settings->strobe_line != '\0',
 	};
+}
+
+void outputs_init(struct lab *lab)
+{
+	const struct lab_settings *settings = &lab->settings;
+	lab->marker = outputs_marker(lab, settings);
+	lab->strobe_lines = outputs_strobe(lab, settings);
 	strobe_init(&lab->strobe, settings->strobe_phase, settings->strobe_duty, settings->strobe_limit, lab->period_ns);
-	lab->strobe_due_ns = lab->strobe_off_ns = LAB_NEVER;
+	outputs_change(lab, true, true);
+}
+
+void outputs_change(struct lab *lab, bool other_marker, bool other_strobe)
+{
+	const struct lab_settings *settings = &lab->settings;
+	if (other_marker)
+		lab->levels = initial_levels(settings);
+	lab->pattern = (struct pattern){
+		.kind = (enum pattern_kind)settings->pattern,
+		.lines = count_lines(settings),
+		.pulse_ns = (uint64_t)settings->pulse_us * 1000,
+		.offset_ns = (uint64_t)settings->offset_us * 1000,
+		.levels = other_marker ? lab->levels : lab->pattern.levels,
+	};
+	strobe_change(&lab->strobe, settings->strobe_phase, settings->strobe_duty, settings->strobe_limit);
+	if (other_strobe)
+		lab->strobe_due_ns = lab->strobe_off_ns = LAB_NEVER;
 }
 
 bool outputs_flip(struct lab *lab, const struct pattern_flip *flip)
@@ -160,12 +182,28 @@ uint64_t outputs_next(const struct lab *lab)
 	return earlier(schedule_next(&lab->schedule), earlier(strobe_ns, lines_ns));
 }
 
-void outputs_finish(struct lab *lab)
+void outputs_leave_strobe(struct lab *lab)
+{
+	set_strobe(lab, false);
+	strobe_end(&lab->strobe, clock_now(lab->params.clock));
+	lab->strobe_due_ns = lab->strobe_off_ns = LAB_NEVER;
+	lines_finish(&lab->strobe_lines);
+}
+
+void outputs_leave_marker(struct lab *lab)
 {
 	const uint32_t all = (1u << lab->pattern.lines) - 1;
-	set_strobe(lab, false);
-	if (lab->marker.chip && lab->settings->final_level != LAB_FINAL_KEEP)
-		chip_set(lab->marker.chip, lab->settings->final_level == LAB_FINAL_HIGH ? all : 0);
+	struct pattern_change change;
+	while (schedule_take(&lab->schedule, UINT64_MAX, &change))
+		if (change.vblank != UINT64_MAX)
+			note_edge(lab, change.vblank, 0, 0);
+	if (lab->marker.chip && lab->settings.final_level != LAB_FINAL_KEEP)
+		chip_set(lab->marker.chip, lab->settings.final_level == LAB_FINAL_HIGH ? all : 0);
 	lines_finish(&lab->marker);
-	lines_finish(&lab->strobe_lines);
+}
+
+void outputs_finish(struct lab *lab)
+{
+	outputs_leave_strobe(lab);
+	outputs_leave_marker(lab);
 }

@@ -6,6 +6,7 @@
 #define PURSUIT_LAB_STATE_H
 
 #include <pthread.h>
+#include <semaphore.h>
 
 #include "daemon/lab/code.h"
 #include "daemon/lab/guard.h"
@@ -37,9 +38,32 @@ struct lab_shared {
 	uint32_t levels;
 };
 
+/* The lines of a lab, in the order of lab_line(). */
+#define LAB_LINES 5u
+
+/* What lab_prepare() has made. */
+struct lab_prepared {
+	struct lab_settings settings;
+	double period_ns; /* 0: as before */
+	struct {
+		bool other;        /* than there is */
+		bool early;        /* swapped already; `chip` is none, `before` tells how to go back */
+		struct chip *chip; /* NULL: none */
+	} lines[LAB_LINES];
+	bool other_log, other_guard, started;
+	struct latency_log *latency_log;
+	struct guard guard;
+};
+
 struct lab {
 	struct lab_params params;
-	const struct lab_settings *settings;
+	struct lab_settings settings; /* change only while the thread is parked */
+	_Atomic uint32_t patch;       /* the same for the render thread: patch, corner << 2, size << 4 */
+	atomic_bool active;           /* the thread runs, and wants to know of flips */
+	bool running;                 /* there is a thread; the owner's */
+	atomic_bool park;             /* it is to stand still between two flips */
+	sem_t parked, go_on;
+	struct lab_prepared prepared;
 	struct code *code;
 	struct queue flips, render;
 	int wake_fd; /* eventfd */
@@ -47,7 +71,7 @@ struct lab {
 	atomic_bool stop, realtime;
 	struct guard guard;
 	struct latency_log *latency_log;
-	struct vsync *vsync; /* NULL: none is wished for */
+	struct vsync *vsync;
 	struct lab_shared shared;
 
 	/* the thread's own */
@@ -72,13 +96,36 @@ struct lab {
 	bool woken; /* the eventfd has something to be read */
 };
 
+/* ---- lab.c ---- */
+
+/* What can be checked without hardware. 0 or -EINVAL with a sentence. */
+int lab_check(const struct lab_settings *settings, struct error *error);
+/* 0 or a negative errno with a sentence. */
+int lab_start_thread(struct lab *lab, struct error *error);
+/* Lines get their final levels, what was fed has been read. */
+void lab_stop_thread(struct lab *lab);
+/* The thread looks at what was fed. */
+void lab_wake(struct lab *lab);
+/* For the render thread. */
+void lab_publish_patch(struct lab *lab);
+
 /* ---- thread.c ---- */
 
 void *lab_run(void *lab);
+/* As the settings say, where that is permitted. */
+void lab_set_priority(struct lab *lab, pthread_t thread);
 
 /* ---- outputs.c ---- */
 
 void outputs_init(struct lab *lab);
+/* What the settings want of the marker's and the strobe's lines. */
+struct lines outputs_marker(const struct lab *lab, const struct lab_settings *settings);
+struct lines outputs_strobe(const struct lab *lab, const struct lab_settings *settings);
+/* The settings are new; lines as they are, or (`other`) just exchanged. Counts go on. */
+void outputs_change(struct lab *lab, bool other_marker, bool other_strobe);
+/* The marker's or strobe's line goes: edges that were due are lost, levels are safe and final. */
+void outputs_leave_marker(struct lab *lab);
+void outputs_leave_strobe(struct lab *lab);
 /* A flip: plans the marker's change and the strobe's pulse. Does the marker get an edge? */
 bool outputs_flip(struct lab *lab, const struct pattern_flip *flip);
 /* Does what is due now; each reading of the clock is a call that an edge may wait for. */
@@ -91,6 +138,10 @@ void outputs_finish(struct lab *lab);
 /* ---- inputs.c ---- */
 
 void inputs_init(struct lab *lab);
+/* What the settings want of an input's line: 0 photodiode, 1 trigger, 2 vsync. */
+struct lines inputs_line(const struct lab *lab, const struct lab_settings *settings, unsigned which);
+/* The settings are new. */
+void inputs_change(struct lab *lab);
 /* A flip that changes the patch (or nothing is known about its light); the row waits for the light. */
 void inputs_flip(struct lab *lab, struct row *row, bool changed);
 /* Reads edges of lines that have some (`readable`), matches them, keeps lines alive. */

@@ -41,7 +41,7 @@ static json_t *line_json(bool wanted, bool there, const char *text)
 static json_t *vsync_json(const struct lab *lab, const struct lab_shared *shared)
 {
 	static const char *const states[] = {"learning", "trusted", "refused"};
-	if (!lab->vsync)
+	if (!*lab->settings.vsync_line)
 		return json_null();
 	json_t *object = line_json(true, shared->vsync_there, shared->vsync);
 	const struct vsync_counts counts = vsync_get_counts(lab->vsync);
@@ -57,7 +57,7 @@ static json_t *vsync_json(const struct lab *lab, const struct lab_shared *shared
 
 static json_t *shared_json(const struct lab *lab, const struct lab_shared *shared)
 {
-	const struct lab_settings *settings = lab->settings;
+	const struct lab_settings *settings = &lab->settings;
 	json_t *object = json_object();
 	json_object_set_new(object, "gpio_library", json_string(chip_library()));
 	json_object_set_new(object, "marker", line_json(*settings->gpio_line, shared->marker_there, shared->marker));
@@ -113,7 +113,7 @@ static struct lab_shared *copy_shared(struct lab *lab, bool with_ring)
 
 json_t *lab_status_json(struct lab *lab)
 {
-	struct lab_shared *shared = lab ? copy_shared(lab, false) : NULL;
+	struct lab_shared *shared = lab_is_active(lab) ? copy_shared(lab, false) : NULL;
 	json_t *object = shared ? shared_json(lab, shared) : NULL;
 	free(shared);
 	return object;
@@ -145,7 +145,7 @@ static json_t *row_json(const struct points *points)
 
 json_t *lab_rows_json(struct lab *lab, uint64_t from, uint64_t count)
 {
-	struct lab_shared *shared = lab ? copy_shared(lab, true) : NULL;
+	struct lab_shared *shared = lab_is_active(lab) ? copy_shared(lab, true) : NULL;
 	if (!shared)
 		return NULL;
 	const uint64_t total = shared->row_count, oldest = total > LAB_RING ? total - LAB_RING : 0;

@@ -18,9 +18,16 @@ static double clamp(double value, double most)
 
 void strobe_init(struct strobe *strobe, double phase, double duty, double limit, double period_ns)
 {
-	*strobe = (struct strobe){.phase = clamp(phase, 1.0), .limit = clamp(limit, STROBE_MOST), .period_ns = period_ns};
-	strobe->duty = clamp(duty, strobe->limit);
+	*strobe = (struct strobe){.period_ns = period_ns};
+	strobe_change(strobe, phase, duty, limit);
 	strobe->bucket_ns = strobe->limit * period_ns * BUCKET_PERIODS;
+}
+
+void strobe_change(struct strobe *strobe, double phase, double duty, double limit)
+{
+	strobe->phase = clamp(phase, 1.0);
+	strobe->limit = clamp(limit, STROBE_MOST);
+	strobe->duty = clamp(duty, strobe->limit);
 }
 
 uint64_t strobe_due(const struct strobe *strobe, uint64_t flip_ns)

@@ -33,6 +33,9 @@ struct strobe {
 /* Shares as above, taken as they are after clamping to the limits. */
 void strobe_init(struct strobe *strobe, double phase, double duty, double limit, double period_ns);
 
+/* Other shares from the next pulse on; what light there was counts on. */
+void strobe_change(struct strobe *strobe, double phase, double duty, double limit);
+
 /* When the pulse of this flip is due. */
 uint64_t strobe_due(const struct strobe *strobe, uint64_t flip_ns);
 

@@ -199,7 +199,7 @@ static bool has_more(struct lab *lab)
 	if (lab->woken && read(lab->wake_fd, &count, sizeof(count)) < 0)
 		log_debug(lab->params.log, "lab: eventfd: %s", strerror(errno));
 	lab->woken = false;
-	return queue_front(&lab->flips) || atomic_load(&lab->stop);
+	return queue_front(&lab->flips) || atomic_load(&lab->stop) || atomic_load(&lab->park);
 }
 
 static void wait_for_work(struct lab *lab)
@@ -223,14 +223,24 @@ static void wait_for_work(struct lab *lab)
 		inputs[i]->readable = ready > 0 && fds[1 + i].revents;
 }
 
-static void raise_priority(struct lab *lab)
+/* Main has the lab to itself meanwhile. */
+static void stand_still(struct lab *lab)
 {
-	const struct sched_param priority = {.sched_priority = (int)lab->settings->priority};
-	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
-	if (lab->settings->priority == 0)
+	if (!atomic_load(&lab->park))
 		return;
-	const int result = pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority);
-	atomic_store(&lab->realtime, result == 0);
+	sem_post(&lab->parked);
+	while (sem_wait(&lab->go_on) < 0)
+		;
+}
+
+void lab_set_priority(struct lab *lab, pthread_t thread)
+{
+	const bool wanted = lab->settings.priority > 0;
+	const struct sched_param priority = {.sched_priority = (int)lab->settings.priority};
+	if (!wanted && !atomic_load(&lab->realtime))
+		return;
+	const int result = pthread_setschedparam(thread, wanted ? SCHED_FIFO : SCHED_OTHER, &priority);
+	atomic_store(&lab->realtime, wanted && result == 0);
 	if (result != 0)
 		log_warning(lab->params.log,
 					"lab: no real-time priority (%s): under load, edges come later; docs/lab.md says how to permit it",
@@ -241,8 +251,10 @@ void *lab_run(void *data)
 {
 	struct lab *lab = data;
 	pthread_setname_np(pthread_self(), "pursuit-lab");
-	raise_priority(lab);
+	prctl(PR_SET_TIMERSLACK, 1ul, 0, 0, 0);
+	lab_set_priority(lab, pthread_self());
 	while (!atomic_load(&lab->stop)) {
+		stand_still(lab);
 		const uint64_t now_ns = clock_now(lab->params.clock);
 		outputs_work(lab, now_ns);
 		read_flips(lab, now_ns);

@@ -228,6 +228,17 @@ struct vsync_counts vsync_get_counts(struct vsync *vsync)
 	return counts;
 }
 
+void vsync_restart(struct vsync *vsync, double offset_ns)
+{
+	pthread_mutex_lock(&vsync->lock);
+	vsync->offset_ns = offset_ns;
+	vsync->counts.state = VSYNC_LEARNING;
+	vsync->last_ns = 0;
+	vsync->news = false;
+	learn_anew(vsync);
+	pthread_mutex_unlock(&vsync->lock);
+}
+
 /* ---- presenters ---- */
 
 void vsync_expect(struct vsync *vsync, double period_ns)

@@ -55,6 +55,8 @@ void vsync_destroy(struct vsync **vsync);
 
 /* ---- whoever reads the wire ---- */
 
+/* Another wire, or the other edge of it: learned from anew, trusted no more. */
+void vsync_restart(struct vsync *vsync, double offset_ns);
 /* An edge of the kind that counts, in the order of times. */
 void vsync_add_edge(struct vsync *vsync, uint64_t time_ns);
 /* To be called after edges and at vsync_next(): has it become trusted, or is it no more? Then the sentence says so. */

@@ -53,7 +53,7 @@ class Settings(common.Case):
         self.assertEqual(self.get("method", "cell"), "method = grid\ncell = 16\n")
         self.assertIn("it may be 4 to 64 px", self.set("blur=off", "cell=1", status=1))
         self.assertEqual(self.get("blur"), "doubtful\n")
-        self.assertIn("needs a restart", self.set("present=kms", status=1))
+        self.assertIn("no-such", self.set("tee=/no-such/folder/x.y4m", status=1))
 
     def test_undo(self):
         self.set("method=grid", "cell=16")

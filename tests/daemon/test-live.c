@@ -114,9 +114,8 @@ static void test_refusals(void)
 		{"set blur=much", "blur: \"much\" is none of doubtful, everywhere, off"},
 		{"set method=magic", "there is no method \"magic\"; there are hold, "},
 		{"set gama=2", "gama: there is no such setting; did you mean gamma?"},
-		{"set refresh=60", "refresh cannot change while the daemon runs; it needs a restart"},
-		{"set context=cpu", "context cannot change while the daemon runs; it needs a restart"},
-		{"set threads=2", "threads cannot change while the daemon runs; it needs a restart"},
+		{"set refresh=0", "refresh: 0 is below 1 Hz; it may be 1 to 1000 Hz"},
+		{"set context=magic", "context: \"magic\" is none of auto, egl"},
 		{"set allow-users=nobody-of-this-name", "allow-users"},
 		{"set cell=32 blur=much", "blur"},
 	};
@@ -128,15 +127,15 @@ static void test_refusals(void)
 	CHECK(question_setting(fd, "cell = 24\n")); /* all or none */
 }
 
-/* Every row of the table is either taken with its own default, or refused with the reason. */
+/* Every row of the table is taken with its own default. */
 static void test_every_row_has_an_answer(void)
 {
 	for (const struct option_row *row = option_table(); row->name; row++) {
 		char request[128];
+		if (strcmp(row->name, "socket") == 0)
+			continue; /* the default is somebody else's */
 		snprintf(request, sizeof(request), "set %s=%s", row->name, row->default_value);
-		const int result = raw_control(fd, request, -1, &reply);
-		CHECK_INT(result, live_can_change(row) ? 0 : EINVAL);
-		CHECK((result == 0) != (strstr(answer(), "restart") != NULL));
+		CHECK_INT(raw_control(fd, request, -1, &reply), 0);
 	}
 }
 

@@ -22,6 +22,10 @@ static int enter(struct executor *executor, struct error *error)
 	return 0;
 }
 
+static void leave(struct executor *executor)
+{
+}
+
 static void destroy(struct executor **executor)
 {
 	struct executor_cpu *gone = self(*executor);
@@ -110,6 +114,7 @@ static const struct executor_ops ops = {
 			[PASS_READ] = &cpu_pass_read,
 		},
 	.enter = enter,
+	.leave = leave,
 	.destroy = destroy,
 	.release_planes = release_planes,
 	.flush = flush,

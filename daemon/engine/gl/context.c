@@ -102,6 +102,12 @@ int context_enter(struct context *context, struct error *error)
 	return 0;
 }
 
+void context_leave(struct context *context)
+{
+	if (entered == context)
+		step_aside();
+}
+
 void context_destroy(struct context **context)
 {
 	if (!*context)

@@ -41,6 +41,8 @@ void context_destroy(struct context **context);
 
 /* Makes it current whatever else was current on this thread. 0, or -EIO with a sentence if it is lost. */
 int context_enter(struct context *context, struct error *error);
+/* It is current on this thread no more; from now on it is another thread's, or this one's again. */
+void context_leave(struct context *context);
 
 /* The kinds, for context.c only. */
 struct context *context_egl_surfaceless_create(bool gles, struct error *error);

@@ -74,6 +74,11 @@ static void destroy(struct executor **executor)
 	*executor = NULL;
 }
 
+static void leave(struct executor *executor)
+{
+	context_leave(self(executor)->context);
+}
+
 /* GL has copied what it was given. */
 static void release_planes(struct engine *engine)
 {
@@ -154,6 +159,7 @@ static const struct executor_ops ops = {
 			[PASS_COPY] = &gl_pass_copy,
 		},
 	.enter = enter,
+	.leave = leave,
 	.destroy = destroy,
 	.release_planes = release_planes,
 	.flush = flush,
