@@ -147,7 +147,7 @@ static void test_killed(void)
 	start("DUMMY1", "120", "--fullscreen");
 	CHECK(wait_for_rate("DUMMY1", 120.0));
 	CHECK_INT(fixture_stop(&fixture, SIGKILL), 128 + SIGKILL);
-	pursuit_close(&stream);
+	pursuit_close(&game.stream);
 	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
 }
 
