@@ -18,6 +18,7 @@ layout(std140, binding = 0) uniform job
 	ivec4 u_kinds;   /* DEPTH_BITS_*, DEPTH_MAP_*, 1 if motion is halves, place of the first vertex in b_words */
 	vec4 u_scale;    /* T / S; degrees per second of a pixel per S; g squared from which on a cell snaps */
 	vec4 u_range;    /* near, far - near */
+	ivec4 u_band;    /* first row of vertices now, rows in all; first rows of motion and of depth in the textures */
 };
 
 layout(std430, binding = 0) buffer found
@@ -56,7 +57,7 @@ ivec2 plane_pixel(ivec2 pixel, ivec2 plane)
 
 uvec2 motion_bits(ivec2 pixel)
 {
-	uvec2 bits = texelFetch(u_motion, plane_pixel(pixel, u_planes.xy), 0).xy;
+	uvec2 bits = texelFetch(u_motion, plane_pixel(pixel, u_planes.xy) - ivec2(0, u_band.z), 0).xy;
 	if (u_kinds.z == 0)
 		return bits;
 	return uvec2(floatBitsToUint(half_value(bits.x & 0xffffu)), floatBitsToUint(half_value(bits.x >> 16)));
@@ -107,7 +108,7 @@ float depth(ivec2 pixel)
 {
 	if (u_kinds.x == DEPTH_BITS_NONE)
 		return 0.5;
-	uint bits = texelFetch(u_depth, plane_pixel(pixel, u_planes.zw), 0).x;
+	uint bits = texelFetch(u_depth, plane_pixel(pixel, u_planes.zw) - ivec2(0, u_band.w), 0).x;
 	float d = uintBitsToFloat(bits);
 	if (u_kinds.x == DEPTH_BITS_16)
 		d = float(int(bits & 0xffffu)) / 65535.0;
@@ -195,7 +196,8 @@ void find_place(cell at, float least)
 
 void put(vec2 position, vec2 u, float z, float snapped)
 {
-	int at = u_kinds.w + 6 * int(gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x);
+	int row = u_band.x + int(gl_WorkGroupID.y);
+	int at = u_kinds.w + 6 * (row * int(gl_NumWorkGroups.x) + int(gl_WorkGroupID.x));
 	b_words[at] = floatBitsToUint(position.x);
 	b_words[at + 1] = floatBitsToUint(position.y);
 	b_words[at + 2] = floatBitsToUint(u.x);
@@ -270,7 +272,7 @@ void put_cell(cell at, bool snaps)
 
 void main()
 {
-	ivec2 id = ivec2(gl_WorkGroupID.xy), last = ivec2(gl_NumWorkGroups.xy) - 1;
+	ivec2 id = ivec2(gl_WorkGroupID.xy) + ivec2(0, u_band.x), last = ivec2(int(gl_NumWorkGroups.x), u_band.y) - 1;
 	bool border = id.x == 0 || id.y == 0 || id.x == last.x || id.y == last.y;
 	cell at;
 	at.start = max((id - 1) * u_picture.z, ivec2(0));

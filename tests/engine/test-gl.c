@@ -216,26 +216,65 @@ static void test_counters_count(void)
 
 #define MB UINT64_C(1000000)
 
-static void test_memory(void)
+/* A frame that needs everything, at phases that do. */
+static uint64_t memory_of(struct engine *engine, const struct picture *pictures, uint32_t count, uint8_t *out)
 {
-	struct engine *engine = make(&params);
-	struct picture picture;
+	for (uint32_t i = 0; i < count; i++) {
+		begin(engine, &pictures[i], 3);
+		show(engine, &pictures[i], ENGINE_SHOW_REAL, 0.0, out);
+		show(engine, &pictures[i], ENGINE_SHOW_IN_BETWEEN, i ? 2.0 : 2.0 / 3, out);
+	}
+	return engine_get_report(engine)->memory_bytes;
+}
+
+/* Each pixel moves another way by up to three pixels, so that everything is snapped, folds, is torn and blurred. */
+static void shake(const struct picture *picture, uint32_t seed)
+{
+	for (uint32_t y = 0; y < picture->height; y++)
+		for (uint32_t x = 0; x < picture->width; x++) {
+			const uint32_t bits = picture_random(&seed);
+			picture_set_motion(picture, x, y, (float)(bits >> 8 & 0xff) / 42.0f - 3.0f,
+							   (float)(bits >> 16 & 0xff) / 42.0f - 3.0f);
+			picture_set_depth(picture, x, y, (float)(bits & 0xff) / 255.0f);
+		}
+}
+
+/* All planes as large as they can be, the UI everywhere; with `wild` nothing can be left out. */
+static void check_memory(const char *name, const struct engine_params *own, bool wild)
+{
+	struct engine *engine = make(own);
+	struct picture pictures[2];
 	uint8_t *out = malloc((size_t)4 * 1920 * 1080);
 	buffer(engine);
-	draw(&picture, 1920, 1080, 0.0);
-	for (int i = 0; i < 2; i++)
-		show_all(engine, &picture, out);
-	show(engine, &picture, ENGINE_SHOW_REAL, 0.3, out);
-	show(engine, &picture, ENGINE_SHOW_IN_BETWEEN, 2.0, out);
-	const uint64_t bytes = engine_get_report(engine)->memory_bytes;
-	printf("%.1f MB at 1920x1080\n", (double)bytes * 1e-6);
+	for (int i = 0; i < 2; i++) {
+		draw(&pictures[i], 1920, 1080, i);
+		for (uint32_t y = 0; y < 1080; y++)
+			memset(picture_row(&pictures[i], PURSUIT_ROLE_UI, y), 0x40, (size_t)4 * 1920);
+		if (wild)
+			shake(&pictures[i], 7u + (uint32_t)i);
+	}
+	const uint64_t bytes = memory_of(engine, pictures, 2, out);
+	printf("%.1f MB at 1920x1080: %s%s\n", (double)bytes * 1e-6, name, wild ? ", everything wild" : "");
 	CHECK(bytes > 5 * 4 * UINT64_C(1920) * 1080);
 	CHECK(bytes <= 60 * MB);
-	show_all(engine, &picture, out);
-	CHECK_INT(engine_get_report(engine)->memory_bytes, bytes);
-	picture_finish(&picture);
+	CHECK_INT(memory_of(engine, pictures, 2, out), bytes);
+	for (int i = 0; i < 2; i++)
+		picture_finish(&pictures[i]);
 	engine_destroy(&engine);
 	free(out);
+}
+
+static void test_memory(void)
+{
+	struct engine_params own = params;
+	check_memory("default", &own, false);
+	own.motion_model = ENGINE_MOTION_QUADRATIC;
+	own.analysis = ENGINE_ANALYSIS_GPU;
+	check_memory("quadratic, analysed by GL", &own, true);
+	own.blur = ENGINE_BLUR_EVERYWHERE;
+	check_memory("quadratic, analysed by GL, blurred everywhere", &own, false);
+	own.method = "adaptive-grid";
+	check_memory("the same, adaptive-grid", &own, true);
 }
 
 /* ---- the way back ---- */

@@ -16,6 +16,7 @@
 
 #include "daemon/cli/scene_source.h"
 #include "daemon/engine/engine.h"
+#include "tests/engine/picture.h"
 
 #define MB UINT64_C(1000000)
 #define FRAMES 3u
@@ -29,11 +30,17 @@ struct run {
 	uint8_t *out;
 };
 
-static struct engine *make(void)
+static struct engine *make_with(struct engine_params params)
 {
 	struct error error;
-	const struct engine_params params = {.context = ENGINE_CONTEXT_CPU, .threads = 2};
+	params.context = ENGINE_CONTEXT_CPU;
+	params.threads = 2;
 	return engine_create(&params, &error);
+}
+
+static struct engine *make(void)
+{
+	return make_with((struct engine_params){0});
 }
 
 static bool render(struct run *run, const char *scene)
@@ -117,6 +124,47 @@ static void test_scenes(void)
 		check_scene(info->name);
 }
 
+/*
+ * All planes, a UI everywhere, everything in motion, and settings that leave nothing out. What the quadratic model
+ * keeps of the motion of two frames, 12 bytes a pixel of each, comes on top of the bound.
+ */
+static void check_worst(const char *name, const struct engine_params *params)
+{
+	struct run run = {.engine = make_with(*params), .width = 1920, .height = 1080};
+	struct picture pictures[FRAMES];
+	run.out = malloc((size_t)4 * 1920 * 1080);
+	for (uint32_t i = 0; i < FRAMES; i++) {
+		picture_init(&pictures[i], 1920, 1080, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
+		picture_draw_layers(&pictures[i], i);
+		for (uint32_t y = 0; y < 1080; y++)
+			memset(picture_row(&pictures[i], PURSUIT_ROLE_UI, y), 0x40, (size_t)4 * 1920);
+		run.frames[i] = pictures[i].frame;
+	}
+	for (uint32_t i = 0; i < 2 * FRAMES; i++)
+		show(&run, i);
+	const struct engine_report *report = engine_get_report(run.engine);
+	const uint64_t bytes = report->memory_bytes + report->plan_bytes;
+	printf("%s at 1920x1080: %.1f MB told, of which %.1f for the plan\n", name, (double)bytes * 1e-6,
+		   (double)report->plan_bytes * 1e-6);
+	const bool bends = params->motion_model == ENGINE_MOTION_QUADRATIC;
+	CHECK(bytes <= 60 * MB + (bends ? UINT64_C(2) * 12 * 1920 * 1080 : 0));
+	for (uint32_t i = 0; i < 2 * FRAMES; i++)
+		show(&run, i);
+	CHECK_INT((long)told(&run), (long)bytes);
+	for (uint32_t i = 0; i < FRAMES; i++)
+		picture_finish(&pictures[i]);
+	engine_destroy(&run.engine);
+	free(run.out);
+}
+
+static void test_worst(void)
+{
+	struct engine_params params = {.blur = ENGINE_BLUR_EVERYWHERE};
+	check_worst("UI, blurred everywhere", &params);
+	params.motion_model = ENGINE_MOTION_QUADRATIC;
+	check_worst("UI, blurred everywhere, quadratic", &params);
+}
+
 /* Sizes that come and go: what has grown for the largest stays, and no more. */
 static void test_sizes(void)
 {
@@ -191,6 +239,7 @@ int main(int argc, char **argv)
 		return test_result();
 	}
 	RUN(test_scenes);
+	RUN(test_worst);
 	RUN(test_sizes);
 	return test_result();
 }

@@ -3,7 +3,8 @@
 
 /*
  * Three pictures that differ only in some blocks (ORIGINAL, E and B): one canvas
- * and the blocks of all three beside it, put in when one of them is wanted.
+ * that is one of them, and the blocks of the two others beside it, exchanged when
+ * one of these is wanted.
  */
 #ifndef PURSUIT_ENGINE_CPU_LAYERS_H
 #define PURSUIT_ENGINE_CPU_LAYERS_H
@@ -25,8 +26,9 @@ struct block {
 struct layers {
 	struct block *blocks;
 	uint32_t count, capacity;
-	uint8_t *original, *real, *between; /* BLOCK_BYTES a block, one after another */
-	enum picture_id shown;              /* which of the three the canvas holds */
+	uint8_t *pixels[2];      /* BLOCK_BYTES a block, one after another */
+	enum picture_id held[2]; /* what they are of */
+	enum picture_id shown;   /* which of the three the canvas holds */
 };
 
 /* No blocks: all three are what the canvas holds. */
@@ -35,7 +37,10 @@ void layers_clear(struct layers *layers);
 uint64_t layers_bytes(const struct layers *layers);
 void layers_finish(struct layers *layers);
 
-/* The marked tiles, BLOCK_SIZE pixels a side, become blocks, their pixels undefined. 0 or -ENOMEM with a sentence. */
+/*
+ * The marked tiles, BLOCK_SIZE pixels a side, become blocks: pixels[0] of REAL, pixels[1] of BETWEEN, undefined as yet;
+ * the canvas holds ORIGINAL. 0 or -ENOMEM with a sentence.
+ */
 int layers_begin(struct layers *layers, const struct tiles *tiles, struct error *error);
 
 /* Makes the canvas hold one of the three; its border too. */

@@ -75,17 +75,17 @@ static void make_blocks(void *context, uint32_t item, uint32_t thread)
 	for (uint32_t i = item * BLOCKS_OF_ITEM; i < end && i < layers->count; i++) {
 		const struct block *block = &layers->blocks[i];
 		size_t at = (size_t)i * BLOCK_BYTES;
-		uint8_t low[BLOCK_BYTES];
+		uint8_t original[BLOCK_BYTES], low[BLOCK_BYTES];
 		float weights[BLOCK_PIXELS];
-		layers_take_block(block, &executor->pictures[PICTURE_ORIGINAL], layers->original + at);
+		layers_take_block(block, &executor->pictures[PICTURE_ORIGINAL], original);
 		layers_take_block(block, &executor->pictures[PICTURE_LOW], low);
 		if (engine->params.blur == ENGINE_BLUR_EVERYWHERE)
 			for (uint32_t k = 0; k < BLOCK_PIXELS; k++)
 				weights[k] = 1.0f;
 		else
 			read_weights(&executor->weights, block, weights);
-		executor->kernels->compensate(&executor->light, layers->original + at, low, weights, BLOCK_PIXELS,
-									  layers->between + at, layers->real + at);
+		executor->kernels->compensate(&executor->light, original, low, weights, BLOCK_PIXELS, layers->pixels[1] + at,
+									  layers->pixels[0] + at);
 	}
 }
 
@@ -97,14 +97,15 @@ static int run(struct engine *engine, struct error *error)
 	light->count = (float)engine->n;
 	light->boost = (float)engine->boost;
 	light->mix_only = engine->params.no_compensation;
+	const bool everywhere = engine->params.blur == ENGINE_BLUR_EVERYWHERE;
 	int result = layers_begin(&executor->layers, &engine->mesh.low, error);
-	if (result == 0)
+	if (result == 0 && !everywhere)
 		result = reserve(&executor->weights, engine->width, engine->height, error);
 	if (result < 0)
 		return result;
 	contents_layer(&executor->contents, &executor->layers);
 	uint32_t items = (executor->layers.count + BLOCKS_OF_ITEM - 1) / BLOCKS_OF_ITEM;
-	if (engine->params.blur != ENGINE_BLUR_EVERYWHERE) {
+	if (!everywhere) {
 		uint32_t triangles = engine->mesh.doubtful.count / 3;
 		pool_run(executor->base.pool, clear_blocks, executor, items);
 		pool_run(executor->base.pool, put_triangles, engine, (triangles + TRIANGLES_OF_ITEM - 1) / TRIANGLES_OF_ITEM);

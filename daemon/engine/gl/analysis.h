@@ -10,7 +10,7 @@
 #include "daemon/engine/gl/gl.h"
 
 struct analysis {
-	/* Motion and depth as they came, by bits: integers, so that nothing on the way looks at them. */
+	/* A band of motion and depth as they came, by bits: integers, so that nothing on the way looks at them. */
 	struct analysis_plane {
 		GLuint texture;
 		GLenum internal;

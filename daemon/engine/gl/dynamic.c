@@ -5,14 +5,15 @@
 
 #include <errno.h>
 
-void *dynamic_map(struct dynamic *buffer, const struct gl *gl, GLenum target, size_t bytes, struct error *error)
+void *dynamic_map(struct dynamic *buffer, const struct gl *gl, GLenum target, size_t bytes, size_t most,
+				  struct error *error)
 {
 	if (!buffer->id)
 		gl->GenBuffers(1, &buffer->id);
 	gl->BindBuffer(target, buffer->id);
 	if (bytes > buffer->bytes) {
 		/* A little more: contents differ from frame to frame. */
-		buffer->bytes = bytes + bytes / 4;
+		buffer->bytes = bytes + bytes / 4 < most ? bytes + bytes / 4 : most;
 		gl->BufferData(target, (GLsizeiptr)buffer->bytes, NULL, GL_STREAM_DRAW);
 	}
 	void *data = gl->MapBufferRange(target, 0, (GLsizeiptr)bytes, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT);

@@ -19,8 +19,12 @@ struct dynamic {
 	size_t bytes;
 };
 
-/* Binds it to the target and gives memory for its content, to be written, not read. NULL with a sentence. */
-void *dynamic_map(struct dynamic *buffer, const struct gl *gl, GLenum target, size_t bytes, struct error *error);
+/*
+ * Binds it to the target and gives memory for its content, to be written, not read. `most`: bytes that it can ever need
+ * for pictures of that size. NULL with a sentence.
+ */
+void *dynamic_map(struct dynamic *buffer, const struct gl *gl, GLenum target, size_t bytes, size_t most,
+				  struct error *error);
 /* The content is complete. 0, or -EIO with a sentence: GL has lost it. */
 int dynamic_unmap(const struct gl *gl, GLenum target, struct error *error);
 void dynamic_finish(struct dynamic *buffer, const struct gl *gl);

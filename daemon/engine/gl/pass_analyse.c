@@ -2,8 +2,9 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Depth and motion to the plan where that is asked of the GPU (docs/method.md, 12): planes up, one dispatch, vertices
- * back; the triangles are the CPU's. Where GL cannot, it is the CPU's all.
+ * Depth and motion to the plan where that is asked of the GPU (docs/method.md, 12): planes up and a dispatch, by bands
+ * of rows, so that little memory does for them; vertices back; the triangles are the CPU's. Where GL cannot, it is the
+ * CPU's all.
  */
 #include "daemon/engine/gl/executor_gl.h"
 
@@ -22,6 +23,18 @@ _Static_assert(sizeof(struct plan_vertex) == 24, "the shader writes six words a 
 struct shader_job {
 	int32_t picture[4], planes[4], kinds[4];
 	float scale[4], range[4];
+	int32_t band[4];
+};
+
+/* Rows of the picture, about. */
+#define BAND_ROWS 64u
+
+/* Some rows of vertices and the rows of the planes that these are made of. */
+struct band {
+	uint32_t first, count; /* of vertices */
+	struct band_rows {
+		uint32_t first, count;
+	} motion, depth;
 };
 
 struct plane_kind {
@@ -65,13 +78,14 @@ uint64_t analysis_bytes(const struct analysis *analysis)
 
 /* ---- up ---- */
 
+/* With room for that many rows at least. */
 static int make_texture(struct analysis_plane *texture, const struct gl *gl, const struct plane_kind *kind,
-						const struct pursuit_plane *plane, struct error *error)
+						uint32_t width, uint32_t rows, struct error *error)
 {
-	if (texture->internal == kind->internal && texture->width == plane->width && texture->height == plane->height)
+	if (texture->internal == kind->internal && texture->width == width && texture->height >= rows)
 		return 0;
 	gl->DeleteTextures(1, &texture->texture);
-	*texture = (struct analysis_plane){0, kind->internal, plane->width, plane->height};
+	*texture = (struct analysis_plane){0, kind->internal, width, rows};
 	while (gl->GetError() != GL_NO_ERROR)
 		continue;
 	gl->GenTextures(1, &texture->texture);
@@ -79,28 +93,29 @@ static int make_texture(struct analysis_plane *texture, const struct gl *gl, con
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 	gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
-	gl->TexImage2D(GL_TEXTURE_2D, 0, (GLint)kind->internal, (GLsizei)plane->width, (GLsizei)plane->height, 0,
-				   kind->format, kind->type, NULL);
+	gl->TexImage2D(GL_TEXTURE_2D, 0, (GLint)kind->internal, (GLsizei)width, (GLsizei)rows, 0, kind->format, kind->type,
+				   NULL);
 	if (gl->GetError() == GL_NO_ERROR)
 		return 0;
 	gl->DeleteTextures(1, &texture->texture);
 	*texture = (struct analysis_plane){0};
-	return error_set(error, -ENOMEM, "the renderer has no room for a plane of %u x %u", plane->width, plane->height);
+	return error_set(error, -ENOMEM, "the renderer has no room for %u rows of a plane of %u pixels", rows, width);
 }
 
 /* Rows begin at multiples of four bytes, as GL takes them if it is told nothing else. */
-static int send(struct engine *engine, struct analysis_plane *texture, int index, struct error *error)
+static int send(struct engine *engine, struct analysis_plane *texture, int index, struct band_rows part,
+				struct error *error)
 {
 	const struct gl *gl = table_of(engine);
 	struct stream *stream = &gl_of(engine)->stream;
 	const struct pursuit_plane *plane = &engine->job.frame->header.planes[index];
-	const uint8_t *data = engine->job.frame->planes[index];
+	const uint8_t *data = engine->job.frame->planes[index] + part.first * plane->stride;
 	const struct plane_kind kind = kind_of(plane->format);
 	const size_t bytes = (size_t)kind.bytes * plane->width, row_bytes = (bytes + 3) / 4 * 4;
-	int result = make_texture(texture, gl, &kind, plane, error);
+	int result = make_texture(texture, gl, &kind, plane->width, part.count, error);
 	const uint32_t block = stream_rows(row_bytes);
-	for (uint32_t y = 0; y < plane->height && result == 0; y += block) {
-		uint32_t rows = plane->height - y < block ? plane->height - y : block;
+	for (uint32_t y = 0; y < part.count && result == 0; y += block) {
+		uint32_t rows = part.count - y < block ? part.count - y : block;
 		uint8_t *to = stream_begin(stream, gl, rows * row_bytes, error);
 		if (!to)
 			return -ENOMEM;
@@ -113,17 +128,17 @@ static int send(struct engine *engine, struct analysis_plane *texture, int index
 	return result;
 }
 
-static int send_planes(struct engine *engine, const struct plan_job *job, struct error *error)
+static int send_planes(struct engine *engine, const struct plan_job *job, const struct band *band, struct error *error)
 {
 	struct executor_gl *executor = gl_of(engine);
 	const struct gl *gl = table_of(engine);
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_MOTION);
 	gl->BindTexture(GL_TEXTURE_2D, executor->analysis.motion.texture);
-	int result = send(engine, &executor->analysis.motion, job->motion_plane, error);
+	int result = send(engine, &executor->analysis.motion, job->motion_plane, band->motion, error);
 	gl->ActiveTexture(GL_TEXTURE0 + UNIT_DEPTH);
 	gl->BindTexture(GL_TEXTURE_2D, executor->analysis.depth.texture);
 	if (result == 0 && job->depth_plane >= 0)
-		result = send(engine, &executor->analysis.depth, job->depth_plane, error);
+		result = send(engine, &executor->analysis.depth, job->depth_plane, band->depth, error);
 	return result;
 }
 
@@ -156,7 +171,7 @@ static size_t found_bytes(const struct plan_job *job)
 	return 4 * first_vertex(job) + sizeof(struct plan_vertex) * job->columns * job->rows;
 }
 
-static void send_job(struct engine *engine, const struct plan_job *job)
+static void send_job(struct engine *engine, const struct plan_job *job, const struct band *band)
 {
 	struct analysis *analysis = &gl_of(engine)->analysis;
 	const struct gl *gl = table_of(engine);
@@ -169,6 +184,7 @@ static void send_job(struct engine *engine, const struct plan_job *job)
 		{depth_bits(job), depth_map(job), motion->format == PURSUIT_FORMAT_RG16F, (int32_t)first_vertex(job)},
 		{job->scale.ratio, job->scale.degrees, job->least, 0.0f},
 		{job->depth.near_distance, job->depth.range, 0.0f, 0.0f},
+		{(int32_t)band->first, (int32_t)job->rows, (int32_t)band->motion.first, (int32_t)band->depth.first},
 	};
 	if (!analysis->job) {
 		gl->GenBuffers(1, &analysis->job);
@@ -230,18 +246,47 @@ static int take_found(struct engine *engine, const struct plan_job *job, struct 
 	return result;
 }
 
+/* The rows of a plane that show rows `first` to `last` of the picture. */
+static struct band_rows rows_of(const struct engine *engine, const struct plan_job *job, int index, uint32_t first,
+								uint32_t last)
+{
+	if (index < 0)
+		return (struct band_rows){0, 0};
+	const uint64_t height = engine->job.frame->header.planes[index].height, whole = 2 * (uint64_t)job->height;
+	const uint32_t from = (uint32_t)((2 * (uint64_t)first + 1) * height / whole);
+	return (struct band_rows){from, (uint32_t)((2 * (uint64_t)last + 1) * height / whole) - from + 1};
+}
+
+/* Vertex row i is that of the row of cells i - 1, whose last pixels look at the ones below them. */
+static struct band band_at(const struct engine *engine, const struct plan_job *job, uint32_t row)
+{
+	const uint32_t cells = BAND_ROWS / job->cell, bottom = job->height - 1;
+	struct band band = {.first = row, .count = job->rows - row < cells ? job->rows - row : cells};
+	uint32_t first = row ? (row - 1) * job->cell : 0, last = (row + band.count - 1) * job->cell;
+	first = first < bottom ? first : bottom;
+	last = last < bottom ? last : bottom;
+	band.motion = rows_of(engine, job, job->motion_plane, first, last);
+	band.depth = rows_of(engine, job, job->depth_plane, first, last);
+	return band;
+}
+
 static int analyse(struct engine *engine, const struct plan_job *job, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
-	int result = send_planes(engine, job, error);
-	if (result == 0)
-		result = make_room(engine, job, error);
+	struct band band;
+	int result = make_room(engine, job, error);
 	if (result < 0)
 		return result;
 	if (!program_use(&gl_of(engine)->programs, gl, PROGRAM_ANALYSE, 0, error))
 		return -EIO;
-	send_job(engine, job);
-	gl->DispatchCompute(job->columns, job->rows, 1);
+	for (uint32_t row = 0; row < job->rows; row += band.count) {
+		band = band_at(engine, job, row);
+		result = send_planes(engine, job, &band, error);
+		if (result < 0)
+			return result;
+		send_job(engine, job, &band);
+		gl->DispatchCompute(job->columns, band.count, 1);
+	}
 	return take_found(engine, job, error);
 }
 

@@ -22,7 +22,8 @@ int tile_buffer_load(struct tile_buffer *buffer, const struct gl *gl, const stru
 	if (!buffer->array)
 		make_array(buffer, gl);
 	buffer->corners = 0;
-	float *to = dynamic_map(&buffer->vertices, gl, GL_ARRAY_BUFFER, tiles_most_numbers(tiles) * sizeof(*to), error);
+	const size_t most = tiles_most_numbers(tiles) * sizeof(float);
+	float *to = dynamic_map(&buffer->vertices, gl, GL_ARRAY_BUFFER, most, most, error);
 	if (!to)
 		return -ENOMEM;
 	const size_t numbers = tiles_write(tiles, to);

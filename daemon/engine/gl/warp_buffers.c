@@ -35,7 +35,7 @@ static int send_vertices(struct warp_buffers *buffers, const struct gl *gl, cons
 						 struct error *error)
 {
 	const size_t bytes = (size_t)plan->columns * plan->rows * sizeof(*plan->vertices);
-	void *to = dynamic_map(&buffers->vertices, gl, GL_ARRAY_BUFFER, bytes, error);
+	void *to = dynamic_map(&buffers->vertices, gl, GL_ARRAY_BUFFER, bytes, bytes, error);
 	if (!to)
 		return -ENOMEM;
 	memcpy(to, plan->vertices, bytes);
@@ -81,7 +81,8 @@ static int send_lists(struct warp_buffers *buffers, const struct gl *gl, const s
 {
 	const size_t bytes = (size_t)mesh->list_count * sizeof(*mesh->lists);
 	gl->BindVertexArray(buffers->array);
-	uint32_t *to = bytes ? dynamic_map(&buffers->indices, gl, GL_ELEMENT_ARRAY_BUFFER, bytes, error) : NULL;
+	const size_t most = 2 * (size_t)mesh->plan->index_count * sizeof(*mesh->lists);
+	uint32_t *to = bytes ? dynamic_map(&buffers->indices, gl, GL_ELEMENT_ARRAY_BUFFER, bytes, most, error) : NULL;
 	buffers->plain = mesh->plain;
 	buffers->split = kept != NULL;
 	if (!to)
