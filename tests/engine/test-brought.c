@@ -25,6 +25,8 @@ static struct {
 	PFNGLBINDTEXTUREPROC bind_texture;
 	PFNGLTEXIMAGE2DPROC tex_image;
 	PFNGLGETTEXIMAGEPROC get_tex_image;
+	PFNGLCLIENTWAITSYNCPROC client_wait_sync;
+	uint32_t waits; /* for all that was drawn */
 } gl;
 
 static void find(const char *name, void *function)
@@ -70,8 +72,23 @@ static void release(void *data)
 	make_current(EGL_NO_CONTEXT);
 }
 
-static const struct engine_context brought = {
-	.name = "test", .enter = enter, .release = release, .find = eglGetProcAddress};
+static GLenum APIENTRY count_wait(GLsync sync, GLbitfield flags, GLuint64 timeout)
+{
+	gl.waits++;
+	return gl.client_wait_sync(sync, flags, timeout);
+}
+
+typedef void (*function)(void);
+
+static function find_counted(const char *name)
+{
+	if (strcmp(name, "glClientWaitSync") != 0)
+		return eglGetProcAddress(name);
+	find(name, &gl.client_wait_sync);
+	return (function)count_wait;
+}
+
+static const struct engine_context brought = {.name = "test", .enter = enter, .release = release, .find = find_counted};
 
 static struct engine *make(const char *method, enum engine_context_kind kind)
 {
@@ -173,6 +190,41 @@ static void test_kept(void)
 	engine_destroy(&engine);
 }
 
+/* Who fences the texture himself need not wait for it; who wants to know when it is done waits later. */
+static void test_unfinished(void)
+{
+	const struct engine_begin_params begin = {.n = 1};
+	const struct engine_request request = {ENGINE_SHOW_PLAIN, 0.0};
+	struct engine *engine = make("hold", ENGINE_CONTEXT_EGL_SURFACELESS);
+	struct engine_image finished = {.texture = make_texture()};
+	struct engine_image image = {.texture = make_texture(), .unfinished = true};
+	static uint8_t want[BYTES], got[BYTES];
+	struct picture picture;
+	struct error error = {""};
+	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, 0);
+	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 5);
+	CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+	const uint32_t waits = gl.waits;
+	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+	CHECK_INT(gl.waits, waits);
+	CHECK_INT(engine_finish(engine, &error), 0);
+	CHECK_INT(gl.waits, waits + 1);
+	CHECK_INT(engine_render(engine, &request, &finished, &error), 0);
+	CHECK_INT(gl.waits, waits + 2);
+	look(image.texture, got);
+	look(finished.texture, want);
+	CHECK(memcmp(got, want, BYTES) == 0);
+	gl.lost = true;
+	CHECK_INT(engine_finish(engine, &error), -EIO);
+	gl.lost = false;
+	picture_finish(&picture);
+	engine_destroy(&engine);
+
+	engine = make("hold", ENGINE_CONTEXT_CPU);
+	CHECK_INT(engine_finish(engine, &error), 0);
+	engine_destroy(&engine);
+}
+
 /* One that was not asked for, that of a CPU renderer for AUTO, and a lost one. */
 static void test_not_taken(void)
 {
@@ -214,6 +266,7 @@ int main(void)
 		SKIP("no two GL contexts that share");
 	RUN(test_same_bits);
 	RUN(test_kept);
+	RUN(test_unfinished);
 	RUN(test_not_taken);
 	return test_result();
 }
