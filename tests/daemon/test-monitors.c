@@ -11,6 +11,7 @@
 
 #include "tests/daemon/fixture.h"
 #include "tests/daemon/picture-game.h"
+#include "tests/daemon/raw-client.h"
 #include "tests/daemon/xorg.h"
 
 #define WIDTH XORG_WIDTH
@@ -27,17 +28,29 @@ static bool play_until_seen(uint32_t desktop_x, uint32_t desktop_y, uint32_t col
 								   true);
 }
 
-/* All of the picture on the monitor at the right, to the bit. */
-static bool fills_the_right_monitor(void)
+/* Pixels of the monitor at the right that are not the picture's. */
+static uint32_t count_wrong(void)
 {
 	static uint32_t pixels[2 * WIDTH * HEIGHT];
-	if (!play_until_seen(2 * WIDTH - 1, HEIGHT - 1, picture_game_pattern(WIDTH - 1, HEIGHT - 1)) ||
-		!xvfb_capture(&server, DefaultRootWindow(server.display), 2 * WIDTH, HEIGHT, pixels))
-		return false;
 	uint32_t wrong = 0;
+	if (!xvfb_capture(&server, DefaultRootWindow(server.display), 2 * WIDTH, HEIGHT, pixels))
+		return UINT32_MAX;
 	for (uint32_t y = 0; y < HEIGHT; y++)
 		for (uint32_t x = 0; x < WIDTH; x++)
 			wrong += pixels[y * 2 * WIDTH + WIDTH + x] != picture_game_pattern(x, y);
+	return wrong;
+}
+
+/* All of the picture on the monitor at the right, to the bit; the server may be asked while it is being drawn. */
+static bool fills_the_right_monitor(void)
+{
+	if (!play_until_seen(2 * WIDTH - 1, HEIGHT - 1, picture_game_pattern(WIDTH - 1, HEIGHT - 1)))
+		return false;
+	uint32_t wrong = count_wrong();
+	for (int i = 0; i < 100 && wrong > 0; i++) {
+		sleep_ms(50);
+		wrong = count_wrong();
+	}
 	CHECK_INT(wrong, 0);
 	return true;
 }
@@ -108,6 +121,35 @@ static void test_in_and_out_by_key(void)
 	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
 }
 
+static void must_set(const char *change)
+{
+	static struct raw_reply reply;
+	const int fd = raw_greet(fixture.socket);
+	char request[128];
+	snprintf(request, sizeof(request), "set %s", change);
+	CHECK_INT(raw_control(fd, request, -1, &reply), 0);
+	close(fd);
+}
+
+/* Monitor, rate and full screen change while a game plays. */
+static void test_in_and_out_by_settings(void)
+{
+	start("DUMMY0", "120", "--no-fullscreen");
+	CHECK(play_until_seen(300, 200, picture_game_pattern(300, 200)));
+	must_set("fullscreen=yes monitor=DUMMY1");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(wait_for_rate("DUMMY0", XORG_USUAL_HZ));
+	CHECK(fills_the_right_monitor());
+	must_set("refresh=83");
+	CHECK(wait_for_rate("DUMMY1", 85.14));
+	must_set("monitor=DUMMY0");
+	CHECK(wait_for_rate("DUMMY0", 85.14));
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+	must_set("fullscreen=no");
+	CHECK(wait_for_rate("DUMMY0", XORG_USUAL_HZ));
+	stop();
+}
+
 /* A window elsewhere while it is away, and full screen in the mode of before when it is back. */
 static void test_unplugged(void)
 {
@@ -175,6 +217,7 @@ int main(int argc, char **argv)
 	RUN(test_chosen_monitor_at_120);
 	RUN(test_nearest_rate);
 	RUN(test_in_and_out_by_key);
+	RUN(test_in_and_out_by_settings);
 	RUN(test_unplugged);
 	RUN(test_killed);
 	RUN(test_ends_while_the_server_hangs);
