@@ -171,10 +171,11 @@ void report_print(const struct report *report, FILE *out);
 
 /* "psnr=30,perceived_error=4": false with a sentence if it is not of that form. */
 bool report_check_limits(const char *limits, struct error *error);
-/* Names every row that is beyond a limit; how many. */
+/* Names every row that is beyond a limit, and every limit on what no row has; how many. */
 uint32_t report_below_limits(const struct report *report, FILE *out);
-/* Prints what changed since an earlier report.json. *worse: rows worse by more than `percent`; percent < 0: none. */
-int report_compare(const struct report *report, const char *path, double percent, uint32_t *worse, FILE *out,
-				   struct error *error);
+/* An earlier report.json; the caller's. Before the run, which may write over it. NULL with a sentence. */
+json_t *report_load_baseline(const char *path, struct error *error);
+/* Prints what changed since. Rows worse by more than `percent`, all if none can be compared; percent < 0: none. */
+uint32_t report_compare(const struct report *report, const json_t *old, double percent, FILE *out);
 
 #endif

@@ -63,9 +63,29 @@ static bool is_beyond(int measure, double value, double limit)
 	return (score_table[measure].better < 0 ? value : fabs(value - score_table[measure].best)) > limit;
 }
 
+/* A limit on what no row has is not kept. */
+static uint32_t count_unmeasured(const struct report *report, FILE *out)
+{
+	const char *limits = report->options.fail_under;
+	uint32_t unmeasured = 0;
+	int measure;
+	double limit;
+	bool wrong;
+	while (limits && next_limit(&limits, &measure, &limit, &wrong)) {
+		bool found = false;
+		for (uint32_t i = 0; i < report->row_count; i++)
+			found |= isfinite(score_value(&report->rows[i].score, (enum score_measure)measure));
+		if (found)
+			continue;
+		fprintf(out, "pursuit report: no row has %s, the limit is %g\n", score_table[measure].name, limit);
+		unmeasured++;
+	}
+	return unmeasured;
+}
+
 uint32_t report_below_limits(const struct report *report, FILE *out)
 {
-	uint32_t beyond = 0;
+	uint32_t beyond = count_unmeasured(report, out);
 	for (uint32_t i = 0; i < report->row_count; i++) {
 		const char *limits = report->options.fail_under;
 		int measure;
@@ -151,9 +171,15 @@ static void compare_measure(struct comparison *comparison, int measure)
 	const json_t *value = json_object_get(old, "value");
 	const double before = json_number_value(value);
 	const double after = score_value(&comparison->row->score, (enum score_measure)measure);
-	if (!json_is_number(value) || !isfinite(after) || fabs(after - before) < 0.5 * pow(10.0, -info->digits))
+	if (!json_is_number(value) || fabs(after - before) < 0.5 * pow(10.0, -info->digits))
 		return;
 	name_row(comparison);
+	if (!isfinite(after)) {
+		comparison->worse |= comparison->percent >= 0.0;
+		fprintf(comparison->out, "  %-22s %.*f -> none%s\n", info->name, info->digits, before,
+				comparison->percent >= 0.0 ? "  TOO MUCH" : "");
+		return;
+	}
 	const double was = info->better ? before * info->better : -fabs(before - info->best);
 	const double is = info->better ? after * info->better : -fabs(after - info->best);
 	const double lost = 100.0 * (was - is) / fmax(fabs(before), 1e-9);
@@ -165,20 +191,21 @@ static void compare_measure(struct comparison *comparison, int measure)
 			score_spread(&comparison->row->score, (enum score_measure)measure), worse ? "  TOO MUCH" : "");
 }
 
-int report_compare(const struct report *report, const char *path, double percent, uint32_t *worse, FILE *out,
-				   struct error *error)
+json_t *report_load_baseline(const char *path, struct error *error)
 {
 	json_error_t why;
-	uint32_t compared = 0, changed = 0;
-	*worse = 0;
 	json_t *old = json_load_file(path, 0, &why);
-	if (!old)
-		return error_set(error, -EINVAL, "%s: %s", path, why.text);
-	if (!json_is_array(json_object_get(old, "rows"))) {
-		json_decref(old);
-		return error_set(error, -EINVAL, "%s: is no report.json: it has no rows", path);
-	}
-	fprintf(out, "Since %s:\n", path);
+	if (old && json_is_array(json_object_get(old, "rows")))
+		return old;
+	error_set(error, -EINVAL, "%s: %s", path, old ? "is no report.json: it has no rows" : why.text);
+	json_decref(old);
+	return NULL;
+}
+
+uint32_t report_compare(const struct report *report, const json_t *old, double percent, FILE *out)
+{
+	uint32_t compared = 0, changed = 0, worse = 0;
+	fprintf(out, "Since %s:\n", report->options.baseline);
 	for (uint32_t i = 0; i < report->row_count; i++) {
 		struct comparison comparison = {&report->rows[i], find_case(old, &report->rows[i]), percent, out, false, false};
 		if (!comparison.old)
@@ -188,10 +215,15 @@ int report_compare(const struct report *report, const char *path, double percent
 		for (int measure = 0; measure < SCORE_MEASURES; measure++)
 			compare_measure(&comparison, measure);
 		changed += comparison.named;
-		*worse += comparison.worse;
+		worse += comparison.worse;
 	}
 	fprintf(out, "%u of %u rows are in both, %u of them changed", compared, report->row_count, changed);
-	fprintf(out, percent >= 0.0 ? ", %u worse by more than %g %%\n" : "\n", *worse, percent);
-	json_decref(old);
-	return 0;
+	if (percent >= 0.0)
+		fprintf(out, ", %u worse by more than %g %%", worse, percent);
+	fputc('\n', out);
+	if (compared || percent < 0.0)
+		return worse;
+	fprintf(stderr, "pursuit report: no row is in %s, so that nothing can be said not to be worse\n",
+			report->options.baseline);
+	return report->row_count;
 }

@@ -159,18 +159,16 @@ static void print_json(const struct report *report)
 		fclose(file);
 }
 
-static int judge(const struct report *report)
+static int judge(const struct report *report, const json_t *baseline)
 {
 	const struct report_options *options = &report->options;
 	uint32_t worse = 0, beyond = report_below_limits(report, stderr);
-	struct error error;
-	if (options->baseline && report_compare(report, options->baseline, options->fail_worse, &worse,
-											options->json ? stderr : stdout, &error) < 0)
-		return args_failed(VERB, "%s", error.text);
+	if (baseline)
+		worse = report_compare(report, baseline, options->fail_worse, options->json ? stderr : stdout);
 	return worse || beyond ? STATUS_FAILED : STATUS_DONE;
 }
 
-static int run(struct report *report)
+static int run(struct report *report, const json_t *baseline)
 {
 	struct error error = {{0}}, later = {{0}};
 	interrupt_watch();
@@ -189,7 +187,18 @@ static int run(struct report *report)
 		return args_failed(VERB, "%s", later.text);
 	if (report->interrupted)
 		return args_failed(VERB, "interrupted; what was measured until then is kept in %s", report->options.out);
-	return judge(report);
+	return judge(report, baseline);
+}
+
+static int run_since_baseline(struct report *report)
+{
+	struct error error;
+	json_t *baseline = report->options.baseline ? report_load_baseline(report->options.baseline, &error) : NULL;
+	if (report->options.baseline && !baseline)
+		return args_failed(VERB, "%s", error.text);
+	const int status = run(report, baseline);
+	json_decref(baseline);
+	return status;
 }
 
 int verb_report(int argc, char **argv)
@@ -204,7 +213,7 @@ int verb_report(int argc, char **argv)
 	if (status == STATUS_DONE)
 		status = report_plan(&report);
 	if (status == STATUS_DONE)
-		status = run(&report);
+		status = run_since_baseline(&report);
 	report_finish(&report);
 	return status;
 }

@@ -135,6 +135,30 @@ class Report(common.Case):
             file.write("{}")
         self.assertIn("is no report.json", self.report(*SMALL, "--baseline", self.path("bad.json"), status=1).stderr)
 
+    def test_baseline_that_is_written_over(self):
+        """The folder may be the same: what counts is the report that was there before."""
+        self.report(*SMALL)
+        changed = self.report(*SMALL, "--cell", "32", "--baseline", self.path("out/report.json"), "--fail-worse", "0.5", status=1)
+        self.assertIn("TOO MUCH", changed.stdout)
+
+    def test_what_is_not_there_is_not_good(self):
+        """A demand that nothing was measured for is not met."""
+        self.report(*SMALL, out="old")
+        other = [*SMALL[:5], "48x27", *SMALL[6:], "--baseline", self.path("old/report.json")]
+        self.assertIn("0 of 3 rows are in both", self.report(*other).stdout)
+        self.assertIn("no row is in", self.report(*other, "--fail-worse", "5", status=1).stderr)
+        self.must("record", self.path("fan.pursuit"), "--scene", "fan", "--size", "96x54", "--fps", "60", "--seconds", "0.2")
+        recorded = ["--scenes", "none", "--recordings", self.path("fan.pursuit"), "--methods", "hold"]
+        result = self.report(*recorded, "--fail-under", "psnr=5,perceived_error=50", status=1)
+        self.assertIn("no row has perceived_error, the limit is 50", result.stderr)
+        with open(self.path("out/report.json")) as file:
+            old = json.load(file)
+        old["rows"][0]["measures"]["perceived_error"]["value"] = 4.5
+        with open(self.path("more.json"), "w") as file:
+            json.dump(old, file)
+        result = self.report(*recorded, "--baseline", self.path("more.json"), "--fail-worse", "5", status=1)
+        self.assertRegex(result.stdout, "perceived_error +4.50 -> none  TOO MUCH")
+
     def test_an_interrupt_keeps_rows(self):
         command = [common.PURSUIT, "report", "--scenes", "fan,rings,trees,tower,creature,colonnade", *SMALL[2:], "--out",
                    self.path("out")]
