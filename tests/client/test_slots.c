@@ -64,13 +64,15 @@ static void save(struct model *model)
 /* Every slot has one owner: the daemon, the shared word, or the client. */
 static void check_owners(const struct model *model)
 {
-	uint32_t named = model->latest & PURSUIT_SLOT_INDEX_MASK;
+	uint32_t named = model->latest & PURSUIT_SLOT_INDEX_MASK, taken = 0;
 
 	CHECK(named != model->held);
 	for (uint32_t i = 0; i < model_slots->slot_count; i++) {
 		bool away = i == model->held || i == named;
 		CHECK_INT(model->owners[i] == SHIM_SLOT_AWAY, away);
+		taken += model->owners[i] == SHIM_SLOT_TAKEN;
 	}
+	CHECK_INT(model->taken, taken);
 }
 
 static bool client_takes(struct model *model)

@@ -19,7 +19,7 @@ static struct fixture fixture;
 static int idle_fds; /* of the daemon without clients */
 
 struct counts {
-	uint64_t shown, replaced, refused, in_betweens, vblanks, late;
+	uint64_t shown, replaced, refused, in_betweens, vblanks, late, hinted;
 	uint64_t last_id;
 };
 
@@ -59,6 +59,7 @@ static void poll_feedback(struct pursuit_stream *stream, struct counts *counts)
 		counts->in_betweens += report.in_betweens;
 		counts->vblanks += report.vblanks;
 		counts->late += report.late_in_betweens;
+		counts->hinted += report.next_submit_ns > report.submit_ns;
 		CHECK(report.frame_id > counts->last_id);
 		counts->last_id = report.frame_id;
 		if (report.shown == PURSUIT_SHOWN)
@@ -111,6 +112,7 @@ static void test_two_seconds(void)
 	CHECK_INT(counts.refused, 0);
 	CHECK(counts.shown > FPS / 2);
 	CHECK(counts.in_betweens > 0);
+	CHECK(counts.hinted > 0);
 	CHECK(counts.vblanks >= counts.shown + counts.in_betweens + counts.late);
 	pursuit_close(&stream);
 }

@@ -13,8 +13,14 @@ struct scene {
 	struct governor governor;
 	double costs[GOVERNOR_LEVELS]; /* ms for one real frame with all that belongs to it, by level */
 	uint64_t now_ns;
-	uint32_t late; /* in-betweens that were late, ever */
+	uint32_t late;       /* in-betweens that were late, ever */
+	uint32_t late_every; /* so many real frames one is late whatever it costs; 0: none */
 };
+
+static bool is_late(const struct scene *scene, int frame)
+{
+	return scene->late_every && (uint32_t)frame % scene->late_every == 0;
+}
 
 static void play(struct scene *scene, double seconds)
 {
@@ -23,7 +29,7 @@ static void play(struct scene *scene, double seconds)
 		const struct governor_sample sample = {.now_ns = scene->now_ns += 25000000,
 											   .work_ns = (uint64_t)(work_ms * MS),
 											   .time_ns = 25000000,
-											   .late_in_betweens = work_ms > 25 ? 1 : 0};
+											   .late_in_betweens = work_ms > 25 || is_late(scene, i) ? 1 : 0};
 		scene->late += sample.late_in_betweens;
 		governor_add(&scene->governor, &sample);
 	}
@@ -92,6 +98,22 @@ static void test_it_recovers(void)
 	CHECK(scene.governor.level == 4);
 	for (uint32_t level = 0; level < GOVERNOR_LEVELS; level++)
 		scene.costs[level] = 10;
+	play(&scene, 60);
+	CHECK_INT(scene.governor.level, 0);
+}
+
+/* Some are late although there is time: not enough to go up for, and no reason to try more. */
+static void test_late_ones_keep_it_where_it_is(void)
+{
+	struct scene scene = begin(60, 10, 10, 10, 10);
+	play(&scene, 0.5);
+	CHECK_INT(scene.governor.level, 1);
+	scene.costs[0] = 10;
+	scene.late_every = 12;
+	play(&scene, 60);
+	CHECK_INT(scene.governor.level, 1);
+	CHECK_INT(scene.governor.lowered, 0);
+	scene.late_every = 0;
 	play(&scene, 60);
 	CHECK_INT(scene.governor.level, 0);
 }
@@ -185,6 +207,7 @@ int main(void)
 	RUN(test_the_order);
 	RUN(test_no_level_is_enough);
 	RUN(test_it_recovers);
+	RUN(test_late_ones_keep_it_where_it_is);
 	RUN(test_it_does_not_swing);
 	RUN(test_late_in_betweens);
 	RUN(test_fixed_and_least);

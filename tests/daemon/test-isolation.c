@@ -187,6 +187,17 @@ static void test_streams_and_bytes(void)
 	CHECK_INT(reply.refused.code, PURSUIT_REFUSED_LIMIT);
 	CHECK_STRING(reply.refused.field, "slot_bytes");
 	CHECK(strstr(reply.refused.text, "max-client-mb") != NULL);
+	/* What was closed does not count any more. */
+	for (uint64_t i = 0; i < 40; i++) {
+		const struct pursuit_message_close_stream message = {
+			.header = {.type = PURSUIT_MESSAGE_CLOSE_STREAM, .size = sizeof(message)}, .stream_id = 10 + i};
+		raw_stream_init(&streams[3], other, 10 + i);
+		CHECK(raw_stream_open(&streams[3], &reply));
+		CHECK_INT(raw_send(other, &message, sizeof(message), NULL, 0), 0);
+		CHECK(raw_receive(other, &reply));
+		CHECK_INT(reply.header.type, PURSUIT_MESSAGE_STREAM_CLOSED);
+		raw_stream_finish(&streams[3]);
+	}
 	for (int i = 0; i < 3; i++)
 		raw_stream_finish(&streams[i]);
 	close(large);
