@@ -137,6 +137,30 @@ static void test_burst(void)
 	CHECK(readings() - before < 20);
 }
 
+/*
+ * Changes that do not end are read nevertheless. Where this test was not let run for a while the burst had an end: only
+ * what is read later than that counts.
+ */
+static void test_endless_burst(void)
+{
+	const uint64_t end_ns = now_ns() + UINT64_C(40000000000);
+	uint64_t last_ns = now_ns(), since_ns = last_ns, now = last_ns;
+	unsigned before = readings();
+	while (now < end_ns && now - since_ns < UINT64_C(4000000000)) {
+		write_file(config, "cell = 59\n");
+		sleep_ms(10);
+		now = now_ns();
+		if (now - last_ns > UINT64_C(80000000))
+			since_ns = now;
+		last_ns = now;
+		if (now - since_ns < UINT64_C(500000000))
+			before = readings();
+		else if (readings() > before)
+			return;
+	}
+	CHECK(now >= end_ns);
+}
+
 /* A link that is switched to another file, and that file changed. */
 static void test_link(void)
 {
@@ -293,6 +317,7 @@ int main(int argc, char **argv)
 	RUN(test_slow_writer);
 	RUN(test_deleted);
 	RUN(test_burst);
+	RUN(test_endless_burst);
 	RUN(test_link);
 	RUN(test_many_links);
 	RUN(test_asked_stays);
