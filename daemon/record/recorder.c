@@ -32,7 +32,6 @@ struct recorder {
 	uint64_t spare_bytes;       /* with queued_bytes at most queue_bytes */
 	bool closing;
 	uint64_t queue_bytes;
-	uint32_t queue_frames;
 	struct recorder_stats stats;
 	int result; /* of the first failure */
 	bool adaptive;
@@ -147,8 +146,6 @@ static bool has_room(const struct recorder *recorder, uint64_t bytes)
 		return false;
 	if (stats->queued_frames == 0)
 		return true;
-	if (recorder->queue_frames && stats->queued_frames >= recorder->queue_frames)
-		return false;
 	return stats->queued_bytes <= recorder->queue_bytes && bytes <= recorder->queue_bytes - stats->queued_bytes;
 }
 
@@ -246,7 +243,6 @@ struct recorder *recorder_create(const struct recorder_params *params, struct er
 		return NULL;
 	}
 	recorder->queue_bytes = params->queue_bytes ? params->queue_bytes : DEFAULT_QUEUE_BYTES;
-	recorder->queue_frames = params->queue_frames;
 	recorder->adaptive = params->writer.level == 0;
 	recorder->last = &recorder->first;
 	recorder->writer = recording_writer_create(&params->writer, error);

@@ -21,7 +21,6 @@ struct recorder;
 struct recorder_params {
 	struct recording_writer_params writer; /* level 0: 1, and faster ones while the queue fills up */
 	uint64_t queue_bytes;                  /* of copied frames that wait, 0: 512 MiB */
-	uint32_t queue_frames;                 /* 0: as many as fit */
 };
 
 struct recorder_stats {

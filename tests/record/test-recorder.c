@@ -107,7 +107,7 @@ static void test_slow_disk_never_blocks(void)
 	sample_finish(&sample);
 }
 
-static void test_frame_limit(void)
+static void test_tiny_queue(void)
 {
 	int ends[2];
 	struct error error = {""};
@@ -120,7 +120,7 @@ static void test_frame_limit(void)
 	pthread_mutex_lock(&disk.hold);
 	pthread_create(&thread, NULL, drain, &disk);
 	/* Smaller than one frame: a frame is still taken when nothing else waits. */
-	const struct recorder_params params = {.writer = {.fd = ends[1]}, .queue_bytes = 10, .queue_frames = 2};
+	const struct recorder_params params = {.writer = {.fd = ends[1]}, .queue_bytes = 10};
 	struct recorder *recorder = recorder_create(&params, &error);
 	CHECK(recorder_push(recorder, &sample.frame, 1));
 	CHECK(!recorder_push(recorder, &sample.frame, 1));
@@ -128,6 +128,44 @@ static void test_frame_limit(void)
 	CHECK_INT(recorder_destroy(&recorder, NULL, &error), 0);
 	pthread_join(thread, NULL);
 	close(ends[0]);
+	sample_finish(&sample);
+}
+
+/* Bytes of `frames` pictures at this level, 0: as the queue has it, behind a disk that waits until all are pushed. */
+static uint64_t bytes_at(int level, unsigned frames, const struct sample *sample)
+{
+	int ends[2];
+	struct error error = {""};
+	struct recorder_stats stats;
+	struct slow_disk disk = {.hold = PTHREAD_MUTEX_INITIALIZER};
+	pthread_t thread;
+	CHECK_INT(pipe2(ends, O_CLOEXEC), 0);
+	disk.read_fd = ends[0];
+	pthread_mutex_lock(&disk.hold);
+	pthread_create(&thread, NULL, drain, &disk);
+	const uint64_t bytes = recording_packed_bytes(&sample->frame);
+	const struct recorder_params params = {.writer = {.fd = ends[1], .level = level}, .queue_bytes = frames * bytes};
+	struct recorder *recorder = recorder_create(&params, &error);
+	for (unsigned i = 0; i < frames; i++)
+		CHECK(recorder_push(recorder, &sample->frame, 1));
+	pthread_mutex_unlock(&disk.hold);
+	CHECK_INT(recorder_destroy(&recorder, &stats, &error), 0);
+	pthread_join(thread, NULL);
+	close(ends[0]);
+	return disk.bytes;
+}
+
+/* The fuller the queue, the less is spent on each frame. */
+static void test_level_follows_the_queue(void)
+{
+	struct sample sample;
+	sample_init(&sample, 1, 400, 300);
+	const uint64_t most = bytes_at(-20, 16, &sample), middle = bytes_at(-5, 16, &sample),
+				   least = bytes_at(1, 16, &sample);
+	const uint64_t adapted = bytes_at(0, 16, &sample);
+	printf("       at -20 %llu, -5 %llu, 1 %llu, by the queue %llu\n", (unsigned long long)most,
+		   (unsigned long long)middle, (unsigned long long)least, (unsigned long long)adapted);
+	CHECK(adapted > middle && adapted < most);
 	sample_finish(&sample);
 }
 
@@ -179,7 +217,8 @@ int main(void)
 {
 	RUN(test_all_frames_in_order);
 	RUN(test_slow_disk_never_blocks);
-	RUN(test_frame_limit);
+	RUN(test_tiny_queue);
+	RUN(test_level_follows_the_queue);
 	RUN(test_disk_fills_up);
 	RUN(test_cannot_create);
 	sample_folder_remove();
