@@ -13,6 +13,8 @@ static bool is_unchanged(const struct engine *engine)
 
 struct plan_params analyse_params(const struct engine *engine)
 {
+	const struct damage *damage = &engine->damage;
+	const bool told = damage->known && !damage->found && !engine->params.leave_nothing_out;
 	return (struct plan_params){
 		.cell = engine->params.cell,
 		.threshold_quarter = engine->params.threshold_quarter,
@@ -21,6 +23,8 @@ struct plan_params analyse_params(const struct engine *engine)
 		.last_phase = (float)engine->last_phase,
 		.real_interval_ns = engine->real_interval_ns,
 		.unchanged = is_unchanged(engine),
+		.damage = told ? damage->rectangles : NULL,
+		.damage_count = damage->count,
 		.pool = engine->executor->pool,
 	};
 }

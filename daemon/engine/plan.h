@@ -36,7 +36,13 @@ struct plan_params {
 	float last_phase;           /* p_last, 0 to 8; clamped, NaN is 0 */
 	uint64_t real_interval_ns;  /* T as the pacer knows it; 0: the frame's own */
 	bool unchanged;             /* nothing has changed since the frame before */
-	struct pool *pool;          /* threads that share the work: no bit depends on them; NULL: the caller alone */
+	/*
+	 * Outside these all planes are as they were in the frame damage_since of the header, and nothing moves there. It
+	 * counts if the plan was made of that frame last. NULL: not known.
+	 */
+	const struct pursuit_rectangle *damage;
+	uint32_t damage_count;
+	struct pool *pool; /* threads that share the work: no bit depends on them; NULL: the caller alone */
 };
 
 /* 24 bytes: what the GPU gets. */
@@ -66,6 +72,7 @@ enum plan_tile_class {
 };
 
 struct plan_kernels;
+struct plan_kept;
 
 struct plan {
 	uint64_t frame_id;
@@ -88,6 +95,7 @@ struct plan {
 	uint32_t vertex_capacity, index_capacity;
 	void *scratch;
 	size_t scratch_bytes;
+	struct plan_kept *kept; /* what the next frame's damage may leave as it is; NULL before the first frame */
 	const struct plan_kernels *kernels; /* of the machine, found with the first frame */
 };
 

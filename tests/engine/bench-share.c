@@ -3,9 +3,10 @@
 
 /*
  * The cost of a real frame with its in-betweens against the share of the picture that moves, and of a still picture;
- * with the straight line that fits best, and the memory that the process has taken.
+ * with the straight line that fits best, and the memory that the process has taken; and against the share of its rows
+ * that change, by a client that says which and by one that does not.
  *
- *   bench-share [CONTEXT [METHOD [WIDTHxHEIGHT]]]
+ *   bench-share [CONTEXT [METHOD [WIDTHxHEIGHT|damage]]]
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -79,6 +80,49 @@ static void run(const char *context, const char *method, uint32_t width, uint32_
 	engine_destroy(&engine);
 }
 
+/* Rows below the changing share do not move, and are in all pictures what they are in the first. */
+static void still_below(const struct picture *picture, const struct picture *first, uint32_t from)
+{
+	for (uint32_t y = from; y < picture->height; y++) {
+		memset(picture_row(picture, PURSUIT_ROLE_MOTION, y), 0, 8 * (size_t)picture->width);
+		for (uint32_t role = PURSUIT_ROLE_COLOR; role <= PURSUIT_ROLE_DEPTH && picture != first; role++)
+			memcpy(picture_row(picture, role, y), picture_row(first, role, y), 4 * (size_t)picture->width);
+	}
+}
+
+static void run_damage(const char *context, const char *method, uint32_t width, uint32_t height, uint32_t n)
+{
+	static const uint32_t percents[] = {1, 5, 10, 25, 50, 100};
+	struct engine *engine = bench_engine(context, method);
+	for (size_t step = 0; step < sizeof(percents) / sizeof(percents[0]); step++) {
+		const uint32_t rows = (height * percents[step] + 99) / 100;
+		struct picture pictures[PICTURES];
+		struct frame frames[PICTURES];
+		struct bench_times times[2];
+		for (uint32_t i = 0; i < PICTURES; i++) {
+			picture_init(&pictures[i], width, height, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
+			picture_draw_layers(&pictures[i], i);
+			still_below(&pictures[i], &pictures[0], rows);
+			frames[i] = pictures[i].frame;
+		}
+		for (uint32_t told = 0; told < 2; told++) {
+			for (uint32_t i = 0; i < PICTURES && told; i++) {
+				frames[i].header.flags |= PURSUIT_FRAME_DAMAGE;
+				frames[i].header.damage_count = 1;
+				frames[i].header.damage[0] = (struct pursuit_rectangle){0, 0, width, rows};
+			}
+			times[told] = bench_time(engine, frames, PICTURES, n, false);
+		}
+		printf("damage/%ux%u/n%u/%u%% told %.2f ms  least %.2f  cpu %.2f  not told %.2f ms  least %.2f  cpu %.2f\n",
+			   width, height, n, percents[step], times[1].median, times[1].least, times[1].cpu, times[0].median,
+			   times[0].least, times[0].cpu);
+		fflush(stdout);
+		for (uint32_t i = 0; i < PICTURES; i++)
+			picture_finish(&pictures[i]);
+	}
+	engine_destroy(&engine);
+}
+
 static void rest(const char *context, const char *method, uint32_t width, uint32_t height)
 {
 	struct engine *engine = bench_engine(context, method);
@@ -109,5 +153,7 @@ int main(int argc, char **argv)
 		if (argc <= 3 || strcmp(argv[3], name) == 0)
 			run(context, method, sizes[i].width, sizes[i].height, sizes[i].n);
 	}
+	if (argc <= 3 || strcmp(argv[3], "damage") == 0)
+		run_damage(context, method, 1920, 1080, 2);
 	return 0;
 }

@@ -33,8 +33,9 @@ struct sequence {
 	uint8_t *expected;
 	uint64_t frame_id;
 	const char *method;
-	uint32_t found; /* frames that were found to be as the one before, though nobody said so */
-	uint64_t kept;  /* bytes of displayed pictures that were there, while others moved */
+	struct pursuit_rectangle moving; /* where the frame before moves, if in a part; else empty */
+	uint32_t found;                  /* frames that were found to be as the one before, though nobody said so */
+	uint64_t kept;                   /* bytes of displayed pictures that were there, while others moved */
 };
 
 static uint32_t pick(struct sequence *sequence, uint32_t count)
@@ -133,7 +134,9 @@ static void disturb(struct sequence *sequence)
 			for (size_t i = 0; i < pixel; i++)
 				at[i] = (uint8_t)(noise ? pick(sequence, 256) : 10 * speed);
 			picture_set_motion(picture, x, y, 0.25f * (float)speed - 1.0f, noise ? 0.75f : -1.25f);
+			picture_set_depth(picture, x, y, 0.1f * (float)speed);
 		}
+	sequence->moving = (struct pursuit_rectangle){left, top, width, height};
 }
 
 /* The same picture but for a pixel, which is said to move as a whole. */
@@ -203,21 +206,36 @@ static bool change_picture(struct sequence *sequence, uint32_t what, uint32_t y)
 	}
 }
 
+/* The rectangle that may have changed at all, and the one that moves no more. */
+static void tell(struct sequence *sequence, const struct pursuit_rectangle *now, const struct pursuit_rectangle *before)
+{
+	struct pursuit_frame_header *header = &sequence->picture.frame.header;
+	header->flags = PURSUIT_FRAME_DAMAGE;
+	header->damage_since = sequence->frame_id;
+	header->damage_count = 0;
+	if (now->width && now->height)
+		header->damage[header->damage_count++] = *now;
+	if (before->width && before->height)
+		header->damage[header->damage_count++] = *before;
+}
+
 /* For a while much changes, then so little that the engine looks for what is as it was; some frames say what. */
 static void change(struct sequence *sequence)
 {
 	struct pursuit_frame_header *header = &sequence->picture.frame.header;
 	const uint32_t what = pick(sequence, sequence->frame_id / 50 % 2 ? 80 : 15);
 	const uint32_t y = pick(sequence, sequence->height);
-	header->flags = 0;
+	const struct pursuit_rectangle before = sequence->moving;
+	sequence->moving = (struct pursuit_rectangle){0};
+	header->flags = header->damage_count = 0;
 	header->motion_kind = pick(sequence, 2) ? PURSUIT_MOTION_BACKWARD : PURSUIT_MOTION_FORWARD;
 	stand_still(&sequence->picture);
-	if (!change_picture(sequence, what, y) || pick(sequence, 3))
-		return;
-	header->flags = PURSUIT_FRAME_DAMAGE;
-	header->damage_since = sequence->frame_id;
-	header->damage_count = what <= 5;
-	header->damage[0] = (struct pursuit_rectangle){0, y, sequence->width, 1};
+	const bool one_row = change_picture(sequence, what, y);
+	const struct pursuit_rectangle row = {0, y, what <= 5 ? sequence->width : 0, 1};
+	if (one_row && pick(sequence, 3) == 0)
+		tell(sequence, &row, &before);
+	else if (what >= 6 && what <= 8 && pick(sequence, 2))
+		tell(sequence, &sequence->moving, &before);
 }
 
 /* Whether the engine left the upload out though nobody had said that nothing changed. */
@@ -232,6 +250,16 @@ static bool was_found(struct sequence *sequence)
 	return false;
 }
 
+/* Of a frame that told what changed; methods without a grid leave the plan as it was. */
+static bool is_planned_alike(const struct sequence *sequence)
+{
+	char plan[1024], anew[1024];
+	const bool grid = strcmp(sequence->method, "pursuit") == 0 || strcmp(sequence->method, "grid") == 0;
+	engine_print_plan(sequence->engine, plan, sizeof(plan));
+	engine_print_plan(sequence->anew, anew, sizeof(anew));
+	return !grid || !sequence->picture.frame.header.damage_count || strcmp(plan, anew) == 0;
+}
+
 static void begin(struct sequence *sequence)
 {
 	struct error error;
@@ -244,6 +272,7 @@ static void begin(struct sequence *sequence)
 	frame.stream = 0;
 	frame.header.flags = 0;
 	CHECK_INT(engine_begin(sequence->anew, &frame, &params, &error), 0);
+	CHECK(is_planned_alike(sequence));
 }
 
 static bool is_same(const struct sequence *sequence, const struct engine_image *image)

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+#include "daemon/engine/analysis/kept.h"
+
 /* Bands a thread, so that none waits long for another; and pixels a band, so that rows loaded twice are few. */
 #define BANDS_OF_THREAD 4u
 #define LEAST_ROWS 32u
@@ -46,20 +48,29 @@ static uint32_t begin_of(const struct plan_bands *bands, uint32_t band)
 	return (uint32_t)((uint64_t)bands->cells_y * band / bands->count);
 }
 
+/* Rows of pixels up to `end`, those before `*loaded` are in the ring already. Does any from `start` on move? */
+static bool load_rows(struct plan_motion *motion, uint32_t start, uint32_t end, uint32_t *loaded)
+{
+	bool moves = false;
+	for (uint32_t y = start; y <= end; y++) {
+		if (y >= *loaded)
+			plan_motion_load(motion, y);
+		moves |= plan_motion_moves(motion, y);
+	}
+	*loaded = end + 1;
+	return moves;
+}
+
 /* Cell rows from the top; the vertices begin with the first that moves. */
 static bool look(struct plan_motion *motion, struct plan_grid *grid, uint32_t first, uint32_t last)
 {
 	const uint32_t cell = grid->plan->cell, height = grid->plan->height;
+	uint32_t loaded = 0;
 	bool begun = false;
 	plan_motion_begin(motion, last < grid->cells_y ? last * cell : height);
-	plan_motion_load(motion, first * cell);
 	for (uint32_t r = first; r < last; r++) {
 		uint32_t start = r * cell, end = height - start < cell ? height : start + cell;
-		bool moves = plan_motion_moves(motion, start);
-		for (uint32_t y = start + 1; y <= end; y++) {
-			plan_motion_load(motion, y);
-			moves |= plan_motion_moves(motion, y);
-		}
+		bool moves = plan_kept_touched(grid->plan, r + 1) && load_rows(motion, start, end, &loaded);
 		if (moves && !begun) {
 			plan_grid_begin(grid, first);
 			begun = true;

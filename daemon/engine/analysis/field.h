@@ -33,7 +33,8 @@ void plan_motion_init(struct plan_motion *motion, const struct frame *frame, uin
 /* Forgets those in the ring: rows may begin anywhere. */
 void plan_motion_begin(struct plan_motion *motion, uint32_t counted_end);
 
-/* Puts row y, at most height, into its slot; row `height` repeats the last one. Each row once, in order. */
+/* Puts row y, at most height, into its slot; row `height` repeats the last one. Each row once, in order; some may be
+ * left out. */
 void plan_motion_load(struct plan_motion *motion, uint32_t y);
 
 /* Is any u of row y, in its slot, not 0? */

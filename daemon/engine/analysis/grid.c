@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "daemon/engine/analysis/facts.h"
+#include "daemon/engine/analysis/kept.h"
 #include "daemon/engine/analysis/values.h"
 
 static float lesser(float a, float b)
@@ -134,6 +135,21 @@ static uint32_t *put_quad(uint32_t *index, uint32_t v00, uint32_t columns, uint3
 	return index + 6;
 }
 
+/* A row of vertices that is in the plan already, into the ring. */
+static void take_row(struct plan_grid *grid, uint32_t index)
+{
+	const struct plan *plan = grid->plan;
+	const struct plan_vertex *vertex = plan->vertices + (size_t)index * plan->columns;
+	struct plan_vertex_row *row = &grid->ring[index % 2];
+	row->still = grid->absent[index % 2] = false;
+	for (uint32_t i = 0; i < plan->columns; i++) {
+		row->x[i] = vertex[i].x;
+		row->y[i] = vertex[i].y;
+		row->ux[i] = vertex[i].ux;
+		row->uy[i] = vertex[i].uy;
+	}
+}
+
 /* Triangles between the row in work and the one before. */
 static void put_quads(struct plan_grid *grid)
 {
@@ -146,6 +162,11 @@ static void put_quads(struct plan_grid *grid)
 			index = put_quad(index, start + i, columns, 1);
 		return;
 	}
+	for (uint32_t i = grid->row - 1; i <= grid->row; i++)
+		if (grid->absent[i % 2]) {
+			take_row(grid, i);
+			grid->ring[i % 2].still = true;
+		}
 	struct plan_quad_counts counts = grid->kernels->quads(upper, lower, columns - 1, plan->last_phase, grid->diagonals);
 	grid->counts.folded += counts.folded;
 	grid->counts.doubtful += counts.doubtful;
@@ -165,25 +186,25 @@ static void put_row(struct plan_grid *grid)
 		struct plan_grid_counts *counts = &grid->counts;
 		counts->max_displacement = largest > counts->max_displacement ? largest : counts->max_displacement;
 	}
+	plan_kept_put(plan, grid->row, row->still);
 	if (grid->follows)
 		put_quads(grid);
 	grid->follows = true;
 	grid->row++;
 }
 
-/* A row of vertices that is in the plan already, into the ring. */
-static void take_row(struct plan_grid *grid, uint32_t index)
+/* Is the row in work in the plan, from a frame before? Then so are the triangles between two such rows. */
+static bool keep_row(struct plan_grid *grid)
 {
-	const struct plan *plan = grid->plan;
-	const struct plan_vertex *vertex = plan->vertices + (size_t)index * plan->columns;
-	struct plan_vertex_row *row = &grid->ring[index % 2];
-	row->still = false;
-	for (uint32_t i = 0; i < plan->columns; i++) {
-		row->x[i] = vertex[i].x;
-		row->y[i] = vertex[i].y;
-		row->ux[i] = vertex[i].ux;
-		row->uy[i] = vertex[i].uy;
-	}
+	const uint32_t here = grid->row % 2;
+	if (!plan_kept_still(grid->plan, grid->row))
+		return false;
+	grid->ring[here].still = grid->absent[here] = true;
+	if (grid->follows && !grid->absent[1 - here])
+		put_quads(grid);
+	grid->follows = true;
+	grid->row++;
+	return true;
 }
 
 void plan_grid_join(struct plan_grid *grid, uint32_t r)
@@ -200,6 +221,7 @@ static struct plan_vertex_row *start_row(struct plan_grid *grid, float y, const 
 	struct plan_vertex_row *row = &grid->ring[grid->row % 2];
 	uint32_t last = grid->cells_x + 1, width = grid->plan->width;
 	row->still = true;
+	grid->absent[grid->row % 2] = false;
 	memset(row->ux, 0, (last + 1) * sizeof(float));
 	memset(row->uy, 0, (last + 1) * sizeof(float));
 	memset(row->snapped, 0, (last + 1) * sizeof(float));
@@ -223,6 +245,8 @@ static void read_depth(struct plan_grid *grid, uint32_t y, float *z)
 
 static void put_border(struct plan_grid *grid, uint32_t pixel_row, float y)
 {
+	if (keep_row(grid))
+		return;
 	read_depth(grid, pixel_row, grid->z);
 	struct plan_vertex_row *row = start_row(grid, y, grid->z);
 	for (uint32_t c = 0; c < grid->cells_x; c++)
@@ -363,6 +387,8 @@ static void start_cell_row(struct plan_grid *grid, const struct band *band)
 
 void plan_grid_still_row(struct plan_grid *grid, uint32_t r)
 {
+	if (keep_row(grid))
+		return;
 	struct band band = band_of(grid, r);
 	start_cell_row(grid, &band);
 	put_row(grid);

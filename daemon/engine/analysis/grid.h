@@ -34,6 +34,7 @@ struct plan_grid {
 	float *z, *z_second; /* a row of pixels, the smaller of j0 and j1, and j1 */
 	/* vertices: the row before and the one in work */
 	struct plan_vertex_row ring[2];
+	bool absent[2]; /* they are in the plan only: still ones that were kept */
 	uint32_t *diagonals;
 	uint32_t row; /* in work, 0: the upper border */
 	bool follows; /* the other row of the ring is the one above it */

@@ -10,6 +10,7 @@
 #include "daemon/engine/analysis/bands.h"
 #include "daemon/engine/analysis/facts.h"
 #include "daemon/engine/analysis/job.h"
+#include "daemon/engine/analysis/kept.h"
 
 static void reset(struct plan *plan, const struct frame *frame, const struct plan_params *params)
 {
@@ -27,6 +28,8 @@ static void reset(struct plan *plan, const struct frame *frame, const struct pla
 	plan->invalid_pixels = 0;
 	plan->invalid_tiles = NULL;
 	plan->max_displacement = 0;
+	if (plan->kept)
+		plan->kept->clean = false;
 }
 
 /* Cuts the scratch into buffers, after growing it if it is too small. */
@@ -34,7 +37,7 @@ static int prepare(struct plan *plan, struct plan_bands *bands, const struct fra
 {
 	struct plan_arena arena = {NULL, 0};
 	plan_bands_init(bands, frame, &arena);
-	if (plan_scratch_reserve(plan, &arena) < 0)
+	if (plan_scratch_reserve(plan, &arena) < 0 || plan_kept_reserve(plan) < 0)
 		return -ENOMEM;
 	plan_bands_init(bands, frame, &arena);
 	return plan_grid_reserve(plan);
@@ -59,7 +62,10 @@ struct plan_intervals plan_begin(struct plan *plan, const struct frame *frame, c
 int plan_make_with(struct plan *plan, const struct frame *frame, const struct plan_params *params,
 				   const struct plan_kernels *kernels, struct error *error)
 {
+	const bool follows = plan_kept_follows(plan, frame, params);
 	struct plan_intervals intervals = plan_begin(plan, frame, params);
+	if (plan->rest == PLAN_UNCHANGED && follows)
+		plan->kept->clean = true;
 	if (plan->rest != PLAN_MOVES)
 		return 0;
 	struct plan_bands bands = {
@@ -67,7 +73,9 @@ int plan_make_with(struct plan *plan, const struct frame *frame, const struct pl
 	bands.scale = plan_scale_make(plan->real_interval_s, (double)intervals.motion * 1e-9, plan->width, params);
 	if (prepare(plan, &bands, frame))
 		return plan_out_of_memory(plan, error);
+	plan_kept_begin(plan, frame, params, follows);
 	plan_bands_run(&bands);
+	plan_kept_end(plan);
 	return 0;
 }
 
@@ -82,7 +90,8 @@ int plan_make(struct plan *plan, const struct frame *frame, const struct plan_pa
 uint64_t plan_bytes(const struct plan *plan)
 {
 	return plan->vertex_capacity * (uint64_t)sizeof(*plan->vertices) +
-		   plan->index_capacity * (uint64_t)sizeof(*plan->indices) + plan->scratch_bytes;
+		   plan->index_capacity * (uint64_t)sizeof(*plan->indices) + plan->scratch_bytes +
+		   (plan->kept ? sizeof(*plan->kept) + plan->kept->capacity : 0);
 }
 
 void plan_finish(struct plan *plan)
@@ -92,5 +101,6 @@ void plan_finish(struct plan *plan)
 	free(plan->vertices);
 	free(plan->indices);
 	free(plan->scratch);
+	free(plan->kept);
 	*plan = (struct plan){0};
 }
