@@ -142,6 +142,45 @@ def links(page, header):
 # ---- completions ----
 
 
+def settings_of(daemon):
+    """Name, values where they are a list, and help of each setting."""
+    for name, _, choices, text, _, _ in daemon.options:
+        bare = name.replace("[no-]", "")
+        yield bare, ["yes", "no"] if bare != name else choices.split(",") if choices else [], text
+
+
+def subcommands_of(verb):
+    """The first words of a usage like "[list | show NAME]"."""
+    usage = " ".join(verb.texts["usage"])
+    return re.findall(r"(?:^\[|\| )([a-z-]+)", usage) if usage.startswith("[") and " | " in usage else []
+
+
+def bash_settings(daemon):
+    """A function that completes NAME=VALUE; the shell has made three words of that."""
+    names = " ".join(name for name, _, _ in settings_of(daemon))
+    cases = "\n".join(f"\t\t{name}) COMPREPLY=($(compgen -W '{' '.join(values)}' -- \"$word\")) ;;"
+                      for name, values, _ in settings_of(daemon) if values)
+    return (f"_pursuit_names='{names}'\n_pursuit_setting() {{\n"
+            "\tlocal word=$1 name=\n"
+            "\tif [[ $word == = ]]; then name=$2 word=; elif [[ $2 == = ]]; then name=${COMP_WORDS[COMP_CWORD-2]}; fi\n"
+            "\tif [[ -z $name ]]; then\n\t\tcompopt -o nospace 2>/dev/null\n"
+            "\t\tCOMPREPLY=($(compgen -S = -W \"$_pursuit_names\" -- \"$word\"))\n\t\treturn\n\tfi\n"
+            f"\tcase $name in\n{cases}\n\t\t*) COMPREPLY=($(compgen -f -- \"$word\")) ;;\n\tesac\n}}")
+
+
+def bash_words(command):
+    """What completes a word that is no option."""
+    if command.name == "get":
+        return 'COMPREPLY=($(compgen -W "$_pursuit_names" -- "$word"))'
+    if command.name == "set":
+        return '_pursuit_setting "$word" "$last"'
+    if subcommands_of(command):
+        names = " ".join(subcommands_of(command))
+        return (f"if [[ $COMP_CWORD == 2 ]]; then COMPREPLY=($(compgen -W '{names}' -- \"$word\")); "
+                "elif [[ $COMP_CWORD -gt 3 && ${COMP_WORDS[2]} == *set ]]; then _pursuit_setting \"$word\" \"$last\"; fi")
+    return 'COMPREPLY=($(compgen -f -- "$word"))'
+
+
 def bash(verbs, daemon):
     def cases(command):
         lines = []
@@ -154,9 +193,9 @@ def bash(verbs, daemon):
         names = " ".join(name for name, _, _, _ in command.names()) + " --help"
         return (f"\tcase \"$last\" in\n{cases(command)}\n\t\t*) ;;\n\tesac\n"
                 f"\tif [[ $word == -* ]]; then COMPREPLY=($(compgen -W '{names}' -- \"$word\")); "
-                "else COMPREPLY=($(compgen -f -- \"$word\")); fi\n")
+                f"else {bash_words(command)}; fi\n")
 
-    out = ["# bash completion of pursuit and pursuitd; made from their own option tables"]
+    out = ["# bash completion of pursuit and pursuitd; made from their own option tables", bash_settings(daemon)]
     for command in [*verbs, daemon]:
         out.append(f"_pursuit_{command.name.replace('-', '_')}() {{\n\tlocal word=$1 last=$2\n{body(command)}}}")
     names = " ".join(verb.name for verb in verbs)
@@ -173,6 +212,25 @@ def quote(text):
     return "'" + text.replace("'", "'\\''") + "'"
 
 
+def zsh_settings(daemon):
+    names = " ".join(name for name, _, _ in settings_of(daemon))
+    cases = "\n".join(f"\t\t{name}) compadd -- {' '.join(values)} ;;" for name, values, _ in settings_of(daemon) if values)
+    return (f"_pursuit_setting() {{\n\tlocal -a names=({names})\n"
+            "\tif ! compset -P '*='; then\n\t\tcompadd -S = -- $names\n\t\treturn\n\tfi\n"
+            f"\tcase ${{IPREFIX%=}} in\n{cases}\n\t\t*) _files ;;\n\tesac\n}}")
+
+
+def zsh_words(command, daemon):
+    if command.name == "get":
+        return [quote(f"*:setting:({' '.join(name for name, _, _ in settings_of(daemon))})")]
+    if command.name == "set":
+        return [quote("*:setting:_pursuit_setting")]
+    if subcommands_of(command):
+        return [quote(f"1:what:({' '.join(subcommands_of(command))})"), quote("2:application: "),
+                quote("*:setting:_pursuit_setting")]
+    return [quote("*:file:_files")]
+
+
 def zsh(verbs, daemon):
     def arguments(command):
         lines = []
@@ -180,9 +238,9 @@ def zsh(verbs, daemon):
             text = re.sub(r"[][:\\]", r"\\\g<0>", text)
             action = f":{value}:({' '.join(choices)})" if choices else f":{value}:_files" if value else ""
             lines.append(quote(f"{name}[{text}]{action}"))
-        return " \\\n\t\t".join(["_arguments", *lines, "'--help[show help]'", "'*:file:_files'"])
+        return " \\\n\t\t".join(["_arguments", *lines, "'--help[show help]'", *zsh_words(command, daemon)])
 
-    out = ["#compdef pursuit pursuitd", "# made from their own option tables"]
+    out = ["#compdef pursuit pursuitd", "# made from their own option tables", zsh_settings(daemon)]
     described = " ".join(quote(f"{verb.name}:{verb.help}") for verb in verbs)
     out.append("if [[ $service == pursuitd ]]; then\n\t" + arguments(daemon) + "\n\treturn\nfi")
     out.append(f"if (( CURRENT == 2 )); then\n\tlocal -a verbs=({described})\n\t_describe verb verbs\n\treturn\nfi")
@@ -190,6 +248,18 @@ def zsh(verbs, daemon):
     out += [f"\t{verb.name})\n\t\t{arguments(verb)} ;;" for verb in verbs]
     out.append("esac")
     return "\n".join(out) + "\n"
+
+
+def fish_words(verb, daemon):
+    """Settings with their values, and what a verb can do."""
+    seen = f"complete -c pursuit -n '__fish_seen_subcommand_from {verb.name}"
+    if verb.name == "get":
+        return [f"{seen}' -f -a {name} -d {quote(text)}" for name, _, text in settings_of(daemon)]
+    if verb.name == "set":  # of profile, too
+        return [f"{seen}' -f -a {quote(word)} -d {quote(text)}" for name, values, text in settings_of(daemon)
+                for word in [name + "=" + value for value in values] or [name + "="]]
+    names = " ".join(subcommands_of(verb))
+    return [f"{seen}; and not __fish_seen_subcommand_from {names}' -f -a {quote(names)}"] if names else []
 
 
 def fish(verbs, daemon):
@@ -202,6 +272,8 @@ def fish(verbs, daemon):
         for name, value, choices, text in command.names():
             takes = f" -x -a {quote(' '.join(choices))}" if choices else " -r" if value else ""
             out.append(f"complete {condition} -l {name[2:]}{takes} -d {quote(text)}")
+    for verb in verbs:
+        out += fish_words(verb, daemon)
     return "\n".join(out) + "\n"
 
 

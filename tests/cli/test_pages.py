@@ -102,6 +102,48 @@ class Pages(common.Case):
         self.assertIn("--no-compensation", self.complete("pursuit", "replay", "--no"))
         self.assertIn("debug", self.complete("pursuitd", "--log-level", "de"))
 
+    def table(self):
+        """Names of the daemon's settings, and the values of those that have a list."""
+        lines = subprocess.run([os.environ["PURSUITD"], "--print-options"], capture_output=True, text=True, check=True)
+        rows = [line.split("\t") for line in lines.stdout.splitlines() if line.startswith("option\t")]
+        return {row[1].replace("[no-]", ""): ["yes", "no"] if "[no-]" in row[1] else row[3].split(",") if row[3] else []
+                for row in rows}
+
+    def test_bash_completes_settings(self):
+        table = self.table()
+        self.assertGreater(len(table), 60)
+        self.assertEqual(sorted(self.complete("pursuit", "get", "''")), sorted(table))
+        self.assertEqual(sorted(self.complete("pursuit", "set", "''")), sorted(name + "=" for name in table))
+        wanted = {name: values for name, values in table.items() if values}
+        self.assertIn("blur", wanted)
+        with open(self.path("completion"), "w") as file:
+            file.write(pages("bash"))
+        script = f". {self.path('completion')}\n" + "\n".join(
+            f"COMP_WORDS=(pursuit set {name} = ''); COMP_CWORD=4; COMPREPLY=(); _pursuit; echo {name} \"${{COMPREPLY[@]}}\""
+            for name in wanted)
+        said = subprocess.run(["bash", "-c", script], capture_output=True, text=True)
+        self.assertEqual(said.stderr, "")
+        self.assertEqual({line.split()[0]: line.split()[1:] for line in said.stdout.splitlines()}, wanted)
+
+    def test_bash_completes_profile(self):
+        said = subprocess.run([common.PURSUIT, "profile", "nonsense"], capture_output=True, text=True).stderr
+        there = re.search(r"there are (.*)", said).group(1).replace(" and ", ", ").split(", ")
+        self.assertEqual(self.complete("pursuit", "profile", "''"), there)
+        self.assertEqual(self.complete("pursuit", "profile", "set", "game", "motion-m"), ["motion-model="])
+        self.assertEqual(self.complete("pursuit", "profile", "set", "game", "blur", "=", "ev"), ["everywhere"])
+
+    def test_zsh_and_fish_know_the_same(self):
+        texts = {shell: pages(shell) for shell in ("zsh", "fish")}
+        for name, values in self.table().items():
+            for text in texts.values():
+                self.assertRegex(text, rf"\b{name}\b")
+            if values:
+                self.assertIn(f"\t\t{name}) compadd -- {' '.join(values)} ;;", texts["zsh"])
+            for value in values:
+                self.assertIn(f"-a '{name}={value}'", texts["fish"])
+        for text in texts.values():
+            self.assertIn("list show set unset remove", text)
+
     def test_other_shells(self):
         for shell, arguments in [("zsh", ["-n"]), ("fish", ["--no-execute"])]:
             text = pages(shell)
@@ -130,7 +172,9 @@ class Pages(common.Case):
             file.write(pages("fish"))
         environment = {**os.environ, "HOME": self.folder, "XDG_CONFIG_HOME": self.folder}
         for words, expected in [("pursuit repl", "replay"), ("pursuit replay --pred", "--predict"),
-                                ("pursuit replay --blur eve", "everywhere"), ("pursuitd --log-level de", "debug")]:
+                                ("pursuit replay --blur eve", "everywhere"), ("pursuitd --log-level de", "debug"),
+                                ("pursuit get motion-m", "motion-model"), ("pursuit set blur=eve", "blur=everywhere"),
+                                ("pursuit profile un", "unset"), ("pursuit profile set game gov", "governor=auto")]:
             script = f"source {self.path('pursuit.fish')}; complete -C '{words}'"
             result = subprocess.run(["fish", "-N", "-c", script], capture_output=True, text=True, env=environment)
             self.assertEqual(result.stderr, "")
