@@ -17,6 +17,9 @@ static int load(struct arguments *arguments, const char *path, struct error *err
 						 ARGUMENTS_FILES);
 	arguments->files[arguments->file_count++] = path;
 	const int result = configuration_load(&arguments->settings, &arguments->profiles, path, setting_check, error);
+	for (unsigned i = 0; result == 0 && i < OPTION_ROWS; i++)
+		if (arguments->profiles.lines[i])
+			arguments->origins[i] = (struct origin){ORIGIN_FILE, path, arguments->profiles.lines[i]};
 	return result == -ENOENT && may_be_missing ? 0 : result;
 }
 
@@ -34,6 +37,15 @@ static int take_config(struct arguments *arguments, int argc, char **argv, int *
 		path = argv[++*index];
 	const int result = load(arguments, path, error);
 	return result < 0 ? result : 1;
+}
+
+static int take_option(struct arguments *arguments, int argc, char **argv, int *index, struct error *error)
+{
+	const struct option_row *row = settings_argument_row(argv[*index]);
+	const int taken = settings_argument(&arguments->settings, ALL_GROUPS, argc, argv, index, error);
+	if (taken == 1 && row)
+		arguments->origins[row - option_table()] = (struct origin){.kind = ORIGIN_COMMAND_LINE};
+	return taken;
 }
 
 static int refuse(const char *argument, struct error *error)
@@ -55,7 +67,7 @@ int arguments_read(struct arguments *arguments, int argc, char **argv, struct er
 	for (int i = 1; i < argc; i++) {
 		int taken = take_config(arguments, argc, argv, &i, error);
 		if (taken == 0)
-			taken = settings_argument(&arguments->settings, ALL_GROUPS, argc, argv, &i, error);
+			taken = take_option(arguments, argc, argv, &i, error);
 		if (taken < 0)
 			return taken;
 		if (taken == 0)

@@ -12,7 +12,21 @@
 #define ARGUMENTS_FILES 8u
 #define ALL_GROUPS (1u << OPTION_ENGINE | 1u << OPTION_OUTPUT | 1u << OPTION_LAB | 1u << OPTION_DAEMON)
 
+/* Where a setting that is no application's comes from. */
+enum origin_kind {
+	ORIGIN_DEFAULT = 0,
+	ORIGIN_FILE,
+	ORIGIN_COMMAND_LINE,
+};
+
+struct origin {
+	enum origin_kind kind;
+	const char *file; /* of ORIGIN_FILE: points into argv */
+	unsigned line;
+};
+
 struct arguments {
+	struct origin origins[OPTION_ROWS]; /* by the place of the row */
 	struct settings settings;
 	struct profiles profiles;
 	const char *files[ARGUMENTS_FILES]; /* in the order of reading; point into argv */

@@ -15,7 +15,7 @@ static const char section_word[] = "application";
 void profiles_finish(struct profiles *profiles)
 {
 	free(profiles->list);
-	*profiles = (struct profiles){NULL, 0};
+	*profiles = (struct profiles){.list = NULL};
 }
 
 static struct profile *find(const struct profiles *profiles, const char *application)
@@ -148,6 +148,8 @@ static int take_setting(struct reading *reading, const char *name, const char *v
 		result = reading->check(row, settings, error);
 	if (result == 0 && profile)
 		profile->has[row - option_table()] = true;
+	else if (result == 0)
+		reading->profiles->lines[row - option_table()] = reading->line;
 	return result;
 }
 
@@ -178,6 +180,7 @@ int configuration_read(struct settings *settings, struct profiles *profiles, FIL
 	int result = 0;
 	for (size_t i = 0; i < profiles->count; i++)
 		profiles->list[i].line = 0;
+	memset(profiles->lines, 0, sizeof(profiles->lines));
 	errno = 0;
 	while (result == 0 && (length = getline(&line, &size, file)) >= 0) {
 		struct error inner;

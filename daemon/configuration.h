@@ -36,6 +36,7 @@ struct profile {
 struct profiles {
 	struct profile *list;
 	size_t count;
+	unsigned lines[OPTION_ROWS]; /* of the settings before the first section of the file read last; 0: not there */
 };
 
 void profiles_finish(struct profiles *profiles);

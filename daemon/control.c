@@ -178,6 +178,22 @@ static void on_settings(struct control *control, const struct request *request)
 	free(text);
 }
 
+/* What a person wants to know of each setting beside its value. */
+static void on_origins(struct control *control, const struct request *request)
+{
+	const struct live *live = control->params.live;
+	json_t *object = json_object();
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		json_t *origin = live_origin_json(live, row);
+		json_object_set_new(origin, "live", json_string(live_effect_name(live_effect_of(row))));
+		json_object_set_new(object, row->name, origin);
+	}
+	char *text = json_dumps(object, JSON_COMPACT);
+	reply(control, request, text ? 0 : ENOMEM, text ? text : "out of memory");
+	free(text);
+	json_decref(object);
+}
+
 static void on_timeline(struct control *control, const struct request *request)
 {
 	unsigned long long from = 0, count = TIMELINE_ROWS;
@@ -307,10 +323,18 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 		const char *name;
 		void (*handle)(struct control *control, const struct request *request);
 	} requests[] = {
-		{"status", on_status},   {"settings", on_settings}, {"timeline", on_timeline},
-		{"latency", on_latency}, {"record", on_record},     {"record-stop", on_record_stop},
-		{"ping", on_ping},       {"key", on_key},           {"set", on_set},
-		{"unset", on_unset},     {"reload", on_reload},
+		{"origins", on_origins},
+		{"status", on_status},
+		{"settings", on_settings},
+		{"timeline", on_timeline},
+		{"latency", on_latency},
+		{"record", on_record},
+		{"record-stop", on_record_stop},
+		{"ping", on_ping},
+		{"key", on_key},
+		{"set", on_set},
+		{"unset", on_unset},
+		{"reload", on_reload},
 	};
 	struct control *control = data;
 	const size_t length = strcspn(text, " ");
@@ -322,10 +346,11 @@ void control_handle(void *data, uint64_t client_id, uint32_t serial, const char 
 		}
 	}
 	char answer[256];
-	snprintf(answer, sizeof(answer),
-			 "\"%.64s\" is no request; there are status, settings, timeline, latency, record, record-stop, set, "
-			 "unset, reload, key and ping",
-			 text);
+	snprintf(
+		answer, sizeof(answer),
+		"\"%.64s\" is no request; there are status, settings, origins, timeline, latency, record, record-stop, set, "
+		"unset, reload, key and ping",
+		text);
 	reply(control, &request, EINVAL, answer);
 	if (fd >= 0)
 		close(fd);

@@ -7,6 +7,9 @@
  *
  *   status                  figures, streams, renderer (JSON)
  *   settings                the settings, name = value lines
+ *   origins                 {name: {from, live, ...}}: where the value of each setting
+ *                           comes from (live_origin_json()), and when it takes
+ *                           effect if it is set (JSON)
  *   timeline [FROM [COUNT]] displayed frames: {first, total, rows: [[vblank,
  *                           target, ready, flip, frame id, show, phase], ...]};
  *                           ask again from first + number of rows

@@ -4,8 +4,11 @@
 #include "daemon/live.h"
 
 #include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "daemon/printable.h"
 #include "daemon/setting_check.h"
 
 enum live_effect live_effect_of(const struct option_row *row)
@@ -59,6 +62,48 @@ void live_add_owner(struct live *live, const struct live_owner *owner)
 const struct profile *live_profile(const struct live *live)
 {
 	return *live->application ? profiles_find(&live->profiles, live->application) : NULL;
+}
+
+/* ---- origins ---- */
+
+/* What an empty path of the socket is made of. */
+static const char *variable_of_socket(void)
+{
+	const char *path = getenv("PURSUIT_SOCKET"), *folder = getenv("XDG_RUNTIME_DIR");
+	if (path && *path)
+		return "PURSUIT_SOCKET";
+	return folder && *folder ? "XDG_RUNTIME_DIR" : NULL;
+}
+
+static json_t *file_json(const char *path, unsigned line)
+{
+	char clean[PATH_MAX];
+	char *real = realpath(path, NULL);
+	snprintf(clean, sizeof(clean), "%s", real ? real : path);
+	free(real);
+	printable_clean(clean);
+	return json_pack("{s:s, s:s, s:i}", "from", "configuration", "file", clean, "line", (int)line);
+}
+
+json_t *live_origin_json(const struct live *live, const struct option_row *row)
+{
+	const size_t place = (size_t)(row - option_table());
+	const struct origin *origin = &live->origins[place];
+	const struct profile *profile = live_profile(live);
+	const char *variable = variable_of_socket();
+	if (live->is_asked[place])
+		return json_pack("{s:s}", "from", "set");
+	if (profile && profile->has[place]) {
+		char clean[EXECUTABLE_NAME_BYTES];
+		snprintf(clean, sizeof(clean), "%s", profile->application);
+		printable_clean(clean);
+		return json_pack("{s:s, s:s}", "from", "profile", "application", clean);
+	}
+	if (origin->kind == ORIGIN_FILE)
+		return file_json(origin->file, origin->line);
+	if (origin->kind == ORIGIN_DEFAULT && strcmp(row->name, "socket") == 0 && variable)
+		return json_pack("{s:s, s:s}", "from", "environment", "variable", variable);
+	return json_pack("{s:s}", "from", origin->kind == ORIGIN_DEFAULT ? "default" : "command line");
 }
 
 /* ---- changes ---- */
@@ -188,28 +233,34 @@ static void tell_of_asked(const struct live *live, const struct settings *fresh)
 	}
 }
 
-static void copy_rows(struct settings *to, const struct settings *from, bool owned)
+/* Those that have an owner, or those that have none. */
+static void take_rows(struct live *live, const struct settings *from, const struct origin *origins, bool owned)
 {
-	for (const struct option_row *row = option_table(); row->name; row++)
-		if (has_owner(row) == owned)
-			copy(to, from, row);
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		if (has_owner(row) != owned)
+			continue;
+		copy(&live->base, from, row);
+		live->origins[row - option_table()] = origins[row - option_table()];
+	}
 }
 
-unsigned live_reload(struct live *live, const struct settings *fresh, struct profiles *profiles, struct error *mistake)
+unsigned live_reload(struct live *live, struct arguments *fresh, struct error *mistake)
 {
 	const struct settings before = live->base;
+	struct origin origins[OPTION_ROWS];
+	memcpy(origins, live->origins, sizeof(origins));
 	mistake->text[0] = 0;
-	tell_of_asked(live, fresh);
+	tell_of_asked(live, &fresh->settings);
 	profiles_finish(&live->profiles);
-	live->profiles = *profiles;
-	*profiles = (struct profiles){.list = NULL};
-	copy_rows(&live->base, fresh, false);
-	copy_rows(&live->base, fresh, true);
+	live->profiles = fresh->profiles;
+	fresh->profiles = (struct profiles){.list = NULL};
+	take_rows(live, &fresh->settings, fresh->origins, false);
+	take_rows(live, &fresh->settings, fresh->origins, true);
 	int changed = settle(live, mistake);
 	if (changed >= 0)
 		return (unsigned)changed;
 	log_error(live->log, "%s; what else needs something new stays as it is, too", mistake->text);
-	copy_rows(&live->base, &before, true);
+	take_rows(live, &before, origins, true);
 	struct error error;
 	changed = settle(live, &error);
 	return changed < 0 ? 0 : (unsigned)changed;

@@ -21,6 +21,9 @@
 #ifndef PURSUIT_LIVE_H
 #define PURSUIT_LIVE_H
 
+#include <jansson.h>
+
+#include "daemon/arguments.h"
 #include "daemon/configuration.h"
 #include "daemon/error.h"
 #include "daemon/log.h"
@@ -56,6 +59,7 @@ struct live {
 	struct log *log;
 	struct settings base; /* without sections and what was asked for */
 	struct profiles profiles;
+	struct origin origins[OPTION_ROWS]; /* of `base` */
 	struct settings asked;
 	bool is_asked[OPTION_ROWS];              /* by the place of the row */
 	char application[EXECUTABLE_NAME_BYTES]; /* that is shown; "": none, or not known */
@@ -82,17 +86,23 @@ int live_set(struct live *live, const char *text, bool owner, struct error *erro
 int live_unset(struct live *live, const char *text, bool owner, struct error *error);
 
 /*
- * Takes over what was read again, and the profiles, which are left empty; the log tells of each. Gives how many
+ * Takes over what was read again, and its profiles, which are left empty; the log tells of each. Gives how many
  * settings took effect. Where an owner cannot make what it needs, the settings that have one stay as they are, all
  * together, and the sentence is in `mistake`; "": there was none.
  */
-unsigned live_reload(struct live *live, const struct settings *fresh, struct profiles *profiles, struct error *mistake);
+unsigned live_reload(struct live *live, struct arguments *fresh, struct error *mistake);
 
 /*
  * This application ("": none) is about to be shown: the settings that its frames are to be made with, NULL if they
  * are those of now. As output_params.shown; `live` is a struct live.
  */
 const struct settings *live_show(void *live, const char *application);
+
+/*
+ * Where the value of a setting comes from, for a program: {"from": "default", "command line", "set", "configuration"
+ * (with "file" and "line"), "profile" (with "application"), "environment" (with "variable")}.
+ */
+json_t *live_origin_json(const struct live *live, const struct option_row *row);
 
 /* The profile that is in force, NULL none. */
 const struct profile *live_profile(const struct live *live);

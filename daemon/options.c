@@ -317,6 +317,14 @@ static const struct option_row *argument_row(const char *name, size_t length, un
 	return row && (group_mask & (1u << row->group)) ? row : NULL;
 }
 
+const struct option_row *settings_argument_row(const char *argument)
+{
+	bool negated;
+	if (strncmp(argument, "--", 2) != 0)
+		return NULL;
+	return argument_row(argument + 2, strcspn(argument + 2, "="), ~0u, &negated);
+}
+
 int settings_argument(struct settings *settings, unsigned group_mask, int argc, char **argv, int *index,
 					  struct error *error)
 {

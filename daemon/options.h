@@ -137,6 +137,9 @@ void settings_describe_values(const struct option_row *row, char *text, size_t s
 int settings_argument(struct settings *settings, unsigned group_mask, int argc, char **argv, int *index,
 					  struct error *error);
 
+/* The row that an argument like "--name", "--name=value" or "--no-name" is about, NULL none. Static. */
+const struct option_row *settings_argument_row(const char *argument);
+
 /* Help lines of the rows of these groups. */
 void settings_print_help(unsigned group_mask, FILE *out);
 

@@ -295,6 +295,7 @@ int main(int argc, char **argv)
 	daemon.settings = arguments.settings;
 	log_init(&daemon.log, (enum log_level)daemon.settings.log_level);
 	live_init(&daemon.live, &daemon.settings, &arguments.profiles, &daemon.log);
+	memcpy(daemon.live.origins, arguments.origins, sizeof(daemon.live.origins));
 	reload_init(&daemon.reload, &daemon.live, &daemon.log, &arguments, argc, argv);
 	status = 0;
 	if (start(&daemon, &error) < 0) {

@@ -216,7 +216,7 @@ int reload_now(struct reload *reload, const char *why, struct error *error)
 		log_error(reload->log, "%s: %s; the settings stay as they are", why, error->text);
 		reload->mistake = *error;
 	} else {
-		result = (int)live_reload(reload->live, &fresh.settings, &fresh.profiles, &reload->mistake);
+		result = (int)live_reload(reload->live, &fresh, &reload->mistake);
 		log_info(reload->log, "%s: settings read again, %d changed", why, result);
 	}
 	arguments_finish(&fresh);

@@ -55,6 +55,35 @@ class Settings(common.Case):
         self.assertEqual(self.get("blur"), "doubtful\n")
         self.assertIn("no-such", self.set("tee=/no-such/folder/x.y4m", status=1))
 
+    def test_get_long(self):
+        """Where each value comes from, and what may be set."""
+        def origin(name):
+            found = json.loads(self.must("get", name, "--long", "--json", "--socket", self.socket).stdout)[name]
+            return [found[key] for key in ("value", "from")]
+
+        self.assertEqual(origin("method"), ["hold", "command line"])
+        self.assertEqual(origin("cell"), ["8", "default"])
+        with open(self.file, "w") as out:
+            out.write("# a comment\ncell = 16\nrefresh = 60\n")
+        for _ in range(200):
+            if origin("refresh") == ["60", "configuration"]:
+                break
+            time.sleep(0.05)
+        self.assertEqual(origin("refresh"), ["60", "configuration"])
+        text = self.get("cell", "--long")
+        self.assertIn(f"# from: configuration file {self.file}:2\n", text)
+        self.assertIn("# 4 to 64 px; default 8; when set: with the next real frame\ncell = 16\n", text)
+        self.set("cell=32")
+        self.assertIn("# from: set by pursuit set\n", self.get("--long", "cell"))
+        self.set("--undo", "cell")
+        self.assertEqual(origin("cell"), ["16", "configuration"])
+        everything = json.loads(self.must("get", "--long", "--json", "--socket", self.socket).stdout)
+        self.assertEqual(everything["blur"]["choices"], ["doubtful", "everywhere", "off"])
+        self.assertEqual([everything["cell"][key] for key in ("least", "most", "unit", "default")], [4, 64, "px", "8"])
+        for name, setting in everything.items():
+            self.assertIn("live", setting, name)
+        self.assertEqual(everything["seccomp"]["live"], "taken over, but not switched off again")
+
     def test_undo(self):
         self.set("method=grid", "cell=16")
         self.set("--undo", "method")
