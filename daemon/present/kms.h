@@ -81,7 +81,8 @@ struct kms {
 	struct kms_picture pictures[FLIPS_IMAGES]; /* of an acquired one: the render thread's */
 	uint32_t tried_width, tried_height;        /* the render thread's: does the controller enlarge these pictures? */
 	bool scales;
-	struct shrink *shrink; /* the render thread's, for pictures of this size; NULL: none yet */
+	struct log_limit size_limit; /* the render thread's */
+	struct shrink *shrink;       /* the render thread's, for pictures of this size; NULL: none yet */
 	uint32_t shrink_width, shrink_height;
 	struct error loss; /* does not change once `lost` is set */
 	uint64_t heard_ns; /* of the display */

@@ -62,26 +62,34 @@ static struct rectangle part_for(const struct kms *kms, uint32_t width, uint32_t
 	return part;
 }
 
-/* How pictures of this size are shown; the controller enlarges one that is smaller than the display, if it can. */
-static void try_size(struct kms *kms, const struct kms_buffer *buffer, uint32_t width, uint32_t height,
-					 const struct rectangle *part)
+static void tell_size(struct kms *kms, uint32_t width, uint32_t height, const struct rectangle *part)
 {
 	const struct kms_mode *mode = kms_device_get_mode(kms->device);
-	const bool large = is_large(kms, width, height), small = part->width < mode->width || part->height < mode->height;
-	pthread_mutex_lock(&kms->lock);
-	const bool ours = !kms->away;
-	kms->scales = ours && !large && small && kms_device_can_scale(kms->device, buffer, part);
-	pthread_mutex_unlock(&kms->lock);
-	if (!ours)
-		return; /* asked again when the display is */
-	kms->tried_width = width;
-	kms->tried_height = height;
-	if (large)
+	if (!log_limit_allows(&kms->size_limit, clock_now(kms->params.clock)))
+		return;
+	if (is_large(kms, width, height))
 		log_info(kms->params.log, "kms: pictures of %ux%u on %ux%u: made smaller, to %ux%u", width, height, mode->width,
 				 mode->height, part->width, part->height);
 	else
 		log_info(kms->params.log, "kms: pictures of %ux%u on %ux%u: %s", width, height, mode->width, mode->height,
 				 kms->scales ? "enlarged by the display controller" : "as they are");
+}
+
+/* How pictures of this size are shown; the controller enlarges one that is smaller than the display, if it can. */
+static void try_size(struct kms *kms, const struct kms_buffer *buffer, uint32_t width, uint32_t height,
+					 const struct rectangle *part)
+{
+	const struct kms_mode *mode = kms_device_get_mode(kms->device);
+	const bool smaller = part->width < mode->width || part->height < mode->height;
+	pthread_mutex_lock(&kms->lock);
+	const bool ours = !kms->away;
+	kms->scales = ours && smaller && !is_large(kms, width, height) && kms_device_can_scale(kms->device, buffer, part);
+	pthread_mutex_unlock(&kms->lock);
+	if (!ours)
+		return; /* asked again when the display is */
+	kms->tried_width = width;
+	kms->tried_height = height;
+	tell_size(kms, width, height, part);
 }
 
 bool kms_can_fence(const struct kms *kms)

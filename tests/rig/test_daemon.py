@@ -190,7 +190,8 @@ def test_pictures_in_gl():
         print("  skipped: no GL on this display:", log)
         return
     passes = find(answer, "passes")
-    check(passes["read"] == 0 and passes["copy"] > 60, f"nothing is read back: {passes}")
+    check(passes["read"] <= 1 and passes["copy"] > 60,
+          f"nothing is read back but the last picture, to be kept when its client has gone: {passes}")
     check(find(answer, "vblanks") == find(answer, "vblanks_on_time"), "every vblank is on time")
     through_memory, answer, log = scan_out("cpu")
     check(find(answer, "passes")["copy"] == 0, "on the CPU there is nothing to copy in GL")
