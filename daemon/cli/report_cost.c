@@ -256,7 +256,7 @@ void report_write_cost_plot(const struct report *report, FILE *script)
 			fprintf(script, "%g %g\n", costs[i]->x[k], costs[i]->ms[k]);
 		fprintf(script, "EOD\n");
 	}
-	fprintf(script, "set multiplot layout 1,2\nset key inside left top\nset yrange [0:*]\n");
+	fprintf(script, "set multiplot layout 1,2\nset key above left\nset yrange [0:*]\n");
 	for (int i = 0; i < 2; i++)
 		fprintf(script,
 				"set xlabel '%s'\nset ylabel 'engine, ms a real frame'\n"

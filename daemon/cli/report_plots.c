@@ -39,7 +39,7 @@ static bool plot_open(struct plot *plot, const struct report *report, const char
 	fprintf(plot->script,
 			"set terminal svg size %u,%u font 'Helvetica,Arial,sans-serif,14' background '#ffffff'\n"
 			"set output '%s.svg'\nset grid linecolor '#dddddd'\nset border 3\nset tics nomirror\n"
-			"set key outside right top vertical samplen 1.5 noenhanced\n",
+			"set key outside right top vertical maxcols 1 samplen 1.5 noenhanced\n",
 			width, height, name);
 	return true;
 }
@@ -109,26 +109,44 @@ static void write_front(FILE *script, struct report_point *points, uint32_t coun
 	fprintf(script, "EOD\n");
 }
 
+/* Where the others have their places; one that is four times as bad as the next would press all of them together. */
+static double highest_shown(const struct report_point *points, uint32_t count)
+{
+	double most = 0.0, second = 0.0;
+	for (uint32_t i = 0; i < count; i++) {
+		second = fmax(second, fmin(most, points[i].error));
+		most = fmax(most, points[i].error);
+	}
+	return second > 0.0 && most > 4.0 * second ? 2.0 * second : (double)INFINITY;
+}
+
+/* A setting of a method has the method's colour and a mark of its own. */
+static uint32_t mark_of(const struct report *report, const struct report_variant *variant)
+{
+	static const uint32_t marks[] = {1, 2, 3, 14, 15};
+	const uint32_t distance = (uint32_t)(variant - plain_variant(report, variant));
+	return marks[(distance + 4) % 5];
+}
+
 static void write_points(const struct report *report, FILE *script, const struct report_point *points, uint32_t count)
 {
-	for (uint32_t i = 0; i < count; i++) {
-		fprintf(script, "$p%u << EOD\n%g %g %g %g \"%s\"\nEOD\n", i, points[i].ms, points[i].ms_low, points[i].ms_high,
-				points[i].error, points[i].variant->plain ? "" : points[i].variant->setting);
-	}
+	const double highest = highest_shown(points, count);
+	for (uint32_t i = 0; i < count; i++)
+		fprintf(script, "$p%u << EOD\n%g %g %g %g\nEOD\n", i, points[i].ms, points[i].ms_low, points[i].ms_high,
+				points[i].error);
+	if (isfinite(highest))
+		fprintf(script, "set yrange [*:%g]\n", highest);
 	fprintf(script, "plot $front using 1:2 with steps linewidth 2 linecolor '#bbbbbb' title 'Pareto front'");
 	for (uint32_t i = 0; i < count; i++) {
 		const struct report_variant *variant = points[i].variant;
 		const uint32_t color = color_of(report, plain_variant(report, variant));
-		fprintf(script,
-				", \\\n $p%u using 1:4:2:3 with xerrorbars linecolor '%s' pointtype %u pointsize %s linewidth %s", i,
-				colors[color], 4 + color % 10, variant->plain ? "1.2" : "0.6", variant->plain ? "1.6" : "1");
-		if (variant->plain)
-			fprintf(script, " title '%s'", variant->method);
-		else
-			fprintf(script,
-					" notitle, \\\n $p%u using 1:4:5 with labels left offset 0.6,0.4 font ',9' textcolor '%s' "
-					"noenhanced notitle",
-					i, colors[color]);
+		fprintf(
+			script,
+			", \\\n $p%u using 1:4:2:3 with xerrorbars linecolor '%s' pointtype %u pointsize %s linewidth %s title '%s",
+			i, colors[color], variant->plain ? 4 + color % 10 : mark_of(report, variant),
+			variant->plain ? "1.2" : "0.8", variant->plain ? "1.6" : "1",
+			variant->plain ? variant->method : variant->setting);
+		fprintf(script, points[i].error > highest ? " (%.1f, above)'" : "'", points[i].error);
 	}
 }
 
@@ -155,7 +173,7 @@ static bool plot_pareto(const struct report *report, const struct report_work *w
 		if (points[i].error > 0.0 && points[i].ms_low > 0.0)
 			points[count++] = points[i];
 	}
-	if (count > 0 && plot_open(&plot, report, name, work ? 560 : 900, work ? 380 : 520)) {
+	if (count > 0 && plot_open(&plot, report, name, work ? 560 : 900, work ? 430 : 520)) {
 		fprintf(plot.script,
 				"set title '%s' noenhanced\nset logscale xy\nset xlabel 'engine, ms a displayed frame "
 				"(median, middle half)'\nset ylabel '%s'\nset yrange [*:*]\nset key font ',11'\n",
@@ -173,33 +191,85 @@ static bool plot_pareto(const struct report *report, const struct report_work *w
 
 /* ---- error over time, error against speed ---- */
 
-static void write_series(FILE *script, uint32_t index, const json_t *series)
+/* A scene is looked at in a few short pieces; the time between them is left out, but for a gap of 20 ms. */
+struct pieces {
+	uint32_t count;
+	double start[8], x[8]; /* s; ms on the axis */
+};
+
+static double series_at(const json_t *series, size_t i, size_t column)
 {
-	double last = (double)NAN;
+	return json_number_value(json_array_get(json_array_get(series, i), column));
+}
+
+static void find_pieces(struct pieces *pieces, const json_t *series)
+{
+	double last = -(double)INFINITY, x = -20.0;
+	*pieces = (struct pieces){0};
+	for (size_t i = 0; i < json_array_size(series) && pieces->count < 8; i++) {
+		const double time = series_at(series, i, 0);
+		if (time - last > 0.5) {
+			pieces->start[pieces->count] = time;
+			pieces->x[pieces->count++] = x += 20.0;
+		} else {
+			x += 1e3 * (time - last);
+		}
+		last = time;
+	}
+}
+
+/* A late method's pieces begin a little elsewhere than those of the others. */
+static uint32_t piece_of(const struct pieces *pieces, double time)
+{
+	uint32_t piece = 0;
+	while (piece + 1 < pieces->count && time > pieces->start[piece + 1] - 0.25)
+		piece++;
+	return piece;
+}
+
+static void write_series(FILE *script, uint32_t index, const struct pieces *pieces, const json_t *series)
+{
+	uint32_t before = 0;
 	fprintf(script, "$s%u << EOD\n", index);
 	for (size_t i = 0; i < json_array_size(series); i++) {
-		const double time = json_number_value(json_array_get(json_array_get(series, i), 0));
-		if (time - last > 0.5)
+		const double time = series_at(series, i, 0);
+		const uint32_t piece = piece_of(pieces, time);
+		if (piece != before)
 			fputc('\n', script);
-		last = time;
-		fprintf(script, "%g %g\n", time, json_number_value(json_array_get(json_array_get(series, i), 1)));
+		before = piece;
+		fprintf(script, "%g %g\n", pieces->x[piece] + 1e3 * (time - pieces->start[piece]), series_at(series, i, 1));
 	}
 	fprintf(script, "EOD\n");
+}
+
+static void write_pieces(FILE *script, const struct pieces *pieces)
+{
+	fprintf(script, "set xtics (");
+	for (uint32_t i = 0; i < pieces->count; i++)
+		fprintf(script, "%s'%.2f s' %g", i ? ", " : "", pieces->start[i], pieces->x[i]);
+	fprintf(script, ")\n");
 }
 
 static bool plot_time(const struct report *report, const struct report_work *work, const char *name)
 {
 	struct plot plot;
-	if (!plot_open(&plot, report, name, 560, 380))
+	struct pieces pieces = {0};
+	if (!plot_open(&plot, report, name, 560, 430))
 		return false;
-	fprintf(
-		plot.script,
-		"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene, s'\nset ylabel 'PSNR of in-betweens, dB'\n"
-		"set key font ',11'\n",
-		work->name, work->n);
+	fprintf(plot.script,
+			"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene; gaps are left out'\nset ylabel 'PSNR of "
+			"in-betweens, dB'\n"
+			"set key font ',11'\n",
+			work->name, work->n);
 	for (uint32_t i = 0; i < report->row_count; i++) {
-		if (report->rows[i].work == work && report->rows[i].variant->plain && report->rows[i].variant->engine)
-			write_series(plot.script, i, report->rows[i].score.over_time);
+		const struct report_row *row = &report->rows[i];
+		if (row->work != work || !row->variant->plain || !row->variant->engine)
+			continue;
+		if (pieces.count == 0) {
+			find_pieces(&pieces, row->score.over_time);
+			write_pieces(plot.script, &pieces);
+		}
+		write_series(plot.script, i, &pieces, row->score.over_time);
 	}
 	const char *separator = "plot ";
 	for (uint32_t i = 0; i < report->row_count; i++) {

@@ -4,10 +4,12 @@ import csv
 import html.parser
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
 import time
+import unittest
 
 import common
 
@@ -269,6 +271,23 @@ class Report(common.Case):
                 svg = file.read()
             self.assertIn("</svg>", svg)
             self.assertIn("grid", svg)
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
+    def test_nothing_covers_anything_in_plots(self):
+        """What is far off is told beside the plot, settings have marks instead of words, and gaps of time take no place."""
+        self.report("--scenes", "fan", "--methods", "hold,black,grid", "--sizes", "96x54", "--n", "2", "--antialias", "1",
+                    "--settings", "cell=4,cell=16")
+        scripts = {}
+        for name in "overall", "time-0-n2-96x54", "error-0-n2-96x54":
+            with open(self.path(f"out/plots/{name}.gp")) as script:
+                scripts[name] = script.read()
+        for name in "overall", "error-0-n2-96x54":
+            self.assertRegex(scripts[name], r"title 'black \([\d.]+, above\)'")
+            self.assertRegex(scripts[name], r"set yrange \[\*:\d")
+            self.assertNotIn("with labels", scripts[name])
+            marks = re.findall(r"linecolor '#d55e00' pointtype (\d+)|linecolor '#56b4e9' pointtype (\d+)", scripts[name])
+            self.assertEqual(len(set(marks)), 3, scripts[name])
+        self.assertRegex(scripts["time-0-n2-96x54"], r"set xtics \('1\.\d+ s' 0, '3\.\d+ s' \d+.*'5\.\d+ s' \d+")
 
     def test_wrong_arguments(self):
         for arguments, words in [
