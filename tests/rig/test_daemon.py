@@ -102,6 +102,13 @@ class Daemon:
                                 stdout=subprocess.PIPE, check=False)
         return json.loads(answer.stdout or "{}")
 
+    def set(self, name, value):
+        answer = subprocess.run([PURSUIT, "set", f"{name}={value}"], env={**os.environ, "PURSUIT_SOCKET": SOCKET},
+                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        if answer.returncode:
+            print(" ", answer.stdout.strip())
+        return answer.returncode == 0
+
     def end(self, number=signal.SIGTERM):
         self.process.send_signal(number)
         return self.process.wait(PATIENCE)
@@ -230,6 +237,26 @@ def test_larger_frames():
         check(find(answer, "vblanks") == find(answer, "vblanks_on_time"), "every vblank is on time")
         check(find(answer, "lost_real_frames") == 0, "no real frame is lost")
         check(len(set(seen)) > 40, f"{context}: pictures are shown: {len(set(seen))}")
+
+
+def test_another_mode():
+    daemon = Daemon("--mode", MODE)
+    check(daemon.is_ready(), "the daemon starts")
+    client = run_client(30)
+    for mode in ("320x180@120", "800x600@100", MODE):
+        check(daemon.set("mode", mode), f"the mode {mode} is taken")
+        size = mode.split("@", maxsplit=1)[0] + "@"
+        check(wait_for(lambda size=size: on_display()[1].startswith(size)), f"and set: {on_display()}, not {mode}")
+        check(on_display()[0] == "pursuitd", f"with the daemon's picture: {on_display()}")
+        shown = find(daemon.status(), "real_frames")
+        check(wait_for(lambda shown=shown: find(daemon.status(), "real_frames") > shown + 40), "frames are shown there")
+    daemon.set("connector", "HDMI-A-1")
+    shown = find(daemon.status(), "real_frames")
+    check(wait_for(lambda: find(daemon.status(), "real_frames") > shown + 40), "a connector that is not there changes nothing")
+    check(on_display() == ("pursuitd", MODE), f"nothing: {on_display()}")
+    check(find(daemon.status(), "lost_real_frames") == 0, f"no real frame is lost: {find(daemon.status(), 'lost_real_frames')}")
+    client.kill()
+    check(daemon.end() == 0, "it ends")
 
 
 def test_no_gl_on_the_display():
