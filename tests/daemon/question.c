@@ -25,11 +25,10 @@ json_int_t question_figure(int connection, const char *request, const char *path
 {
 	json_t *answer = question_ask(connection, request);
 	const json_t *value = answer;
-	char name[64];
-	for (const char *at = path; *at; at += strcspn(at, ".") + (at[strcspn(at, ".")] == '.')) {
-		snprintf(name, sizeof(name), "%.*s", (int)strcspn(at, "."), at);
+	char names[64], *rest = names;
+	snprintf(names, sizeof(names), "%s", path);
+	for (char *name; (name = strsep(&rest, ".")) != NULL;)
 		value = json_object_get(value, name);
-	}
 	if (!json_is_integer(value) && !json_is_array(value))
 		fprintf(stderr, "%s: there is no %s\n", request, path);
 	CHECK(json_is_integer(value) || json_is_array(value));
