@@ -90,7 +90,8 @@ static void on_vblank(void *data, uint64_t sequence, uint64_t time_ns)
 	struct kms *kms = data;
 	struct presenter_flip reports[2];
 
-	if (sequence == kms->sequence || kms->away)
+	/* One that lay there when kms_anchor() asked is of before. */
+	if ((int64_t)(sequence - kms->sequence) <= 0 || kms->away)
 		return;
 	kms->number = vblanks_add(&kms->vblanks, sequence, time_ns);
 	kms->sequence = sequence;

@@ -93,7 +93,7 @@ struct presenter_flip {
 	uint64_t serial; /* of the picture on display, 0 none */
 	uint64_t group;
 	enum presenter_shown shown;
-	bool late;        /* handled only after the next vblank's time */
+	bool late;        /* handled only after the next vblank's time, or at a later one than it was queued for */
 	uint32_t skipped; /* vblanks just before this one that were not handled at all */
 };
 

@@ -19,13 +19,16 @@ int scanout_choose(struct scanout *scanout, uint64_t vblank)
 	struct flips *flips = &scanout->flips;
 	const enum presenter_shown chosen_as = flips_show(flips, vblank);
 
-	if (chosen_as != PRESENTER_KEPT)
+	if (chosen_as != PRESENTER_KEPT) {
 		scanout->chosen_as = chosen_as;
+		scanout->chosen_vblank = vblank;
+	}
 	if (!flips->has_front || scanout->under_way.any || is_same(&scanout->shown, &flips->front))
 		return -1;
 	flips->references[flips->front.image]++;
 	scanout->under_way = (struct scanout_picture){true, flips->front.image, flips->front.serial, flips->front.group};
 	scanout->under_way_vblank = vblank;
+	scanout->under_way_wanted = scanout->chosen_vblank;
 	scanout->under_way_as = scanout->chosen_as;
 	return (int)flips->front.image;
 }
@@ -71,7 +74,7 @@ uint32_t scanout_flipped(struct scanout *scanout, uint64_t vblank, struct presen
 	scanout->under_way.any = false;
 	scanout->fresh = true;
 	scanout->fresh_as = scanout->under_way_as;
-	scanout->fresh_late = vblank > scanout->under_way_vblank;
+	scanout->fresh_late = vblank > scanout->under_way_wanted;
 	return count + report_waiting(scanout, reports + count);
 }
 

@@ -8,8 +8,8 @@
  * a picture has three owners in turn: the queue (struct flips), the flip under
  * way, the display. It can be drawn into again only when none of them holds it.
  *
- * A picture that its vblank did not get, because a flip was still under way, is
- * shown at the next vblank that has none of its own: late, never lost.
+ * A picture that its vblank did not get, because a flip was still under way or
+ * was refused, is shown at the next vblank that has none of its own: late, never lost.
  *
  * Pure; flips and locks are the caller's.
  */
@@ -31,8 +31,10 @@ struct scanout_picture {
 struct scanout {
 	struct flips flips;
 	enum presenter_shown chosen_as; /* how flips.front came to be the front */
+	uint64_t chosen_vblank;         /* and for which vblank */
 	struct scanout_picture under_way, shown;
-	uint64_t under_way_vblank; /* the vblank it is meant for */
+	uint64_t under_way_vblank; /* the vblank it is to happen at */
+	uint64_t under_way_wanted; /* the vblank that its picture was chosen for: before it if a flip was refused or busy */
 	enum presenter_shown under_way_as;
 	bool fresh, fresh_late; /* `shown` was not reported yet */
 	enum presenter_shown fresh_as;

@@ -95,9 +95,14 @@ int kms_device_read_events(struct kms_device *device, const struct kms_events *e
 	if (wanted != 0 && sequence >= wanted)
 		device->wanted = 0;
 	arm(device);
+	const bool ended = flip_at != 0 && sequence >= flip_at, old = ended && atomic_load(&fake_kms.old_event);
+	if (old)
+		events->vblank(events->data, sequence - 3, time_of(device, sequence - 3));
+	if (old)
+		events->flipped(events->data, flip_at);
 	if (wanted != 0 && sequence >= wanted)
 		events->vblank(events->data, sequence, time_of(device, sequence));
-	if (flip_at != 0 && sequence >= flip_at)
+	if (ended && !old)
 		events->flipped(events->data, flip_at);
 	return 0;
 }
@@ -112,11 +117,19 @@ int kms_device_show(struct kms_device *device, const struct kms_buffer *buffer, 
 	return 0;
 }
 
+static bool is_busy(void)
+{
+	if (atomic_load(&fake_kms.busy) == 0)
+		return false;
+	atomic_fetch_sub(&fake_kms.busy, 1);
+	return true;
+}
+
 int kms_device_flip(struct kms_device *device, const struct kms_buffer *buffer, int fence)
 {
 	if (device->away)
 		atomic_fetch_add(&fake_kms.intruding, 1);
-	if (device->flip_at != 0)
+	if (device->flip_at != 0 || is_busy())
 		return -EBUSY;
 	device->next = *buffer;
 	device->flip_at = sequence_now(device) + 1;

@@ -22,8 +22,10 @@ struct fake_kms {
 	atomic_uint torn;             /* pictures on display that were not of one colour */
 	atomic_uint intruding;        /* flips while the display was given away */
 	atomic_bool unplugged;
-	int terminal[2]; /* a pipe: 'L', another console is wanted; 'R', it is back */
-	sem_t left;      /* the display was given away */
+	atomic_uint busy;      /* so many of the next flips are refused with EBUSY */
+	atomic_bool old_event; /* before each flip an event is read of a vblank that was long ago */
+	int terminal[2];       /* a pipe: 'L', another console is wanted; 'R', it is back */
+	sem_t left;            /* the display was given away */
 };
 
 extern struct fake_kms fake_kms;

@@ -16,9 +16,11 @@
 #include "tests/test.h"
 
 #define MS UINT64_C(1000000)
+#define PERIOD_NS (4 * MS)
 #define PICTURES 300u
 #define SWITCHES 12u
 #define PATIENCE_S 20
+#define WANTED 1024u
 
 static struct clock real_clock;
 static struct log quiet;
@@ -26,8 +28,9 @@ static struct log quiet;
 /* What the presenter has told. */
 static struct {
 	atomic_uint_fast64_t vblank, serial, flips;
-	atomic_uint disorder;
-	atomic_bool lost, gone; /* gone: it may tell nothing any more */
+	atomic_uint disorder, late, untrue;  /* untrue: said to be late or not, and it is the other */
+	atomic_uint_fast64_t wanted[WANTED]; /* by serial number: the vblank that the picture was queued for */
+	atomic_bool lost, gone;              /* gone: it may tell nothing any more */
 } heard;
 
 static void on_flip(void *data, const struct presenter_flip *flip)
@@ -37,6 +40,11 @@ static void on_flip(void *data, const struct presenter_flip *flip)
 	if (flip->vblank <= before || flip->serial < serial || atomic_load(&heard.gone))
 		atomic_fetch_add(&heard.disorder, 1);
 	atomic_fetch_add(&heard.flips, 1);
+	if (flip->shown != PRESENTER_PICTURE || flip->skipped)
+		return;
+	atomic_fetch_add(&heard.late, flip->late);
+	if (flip->late != (flip->vblank > atomic_load(&heard.wanted[flip->serial % WANTED])))
+		atomic_fetch_add(&heard.untrue, 1);
 }
 
 static void on_lost(void *data, const char *sentence)
@@ -57,6 +65,8 @@ static struct presenter *open_presenter(void)
 	atomic_store(&heard.vblank, 0);
 	atomic_store(&heard.serial, 0);
 	atomic_store(&heard.flips, 0);
+	atomic_store(&heard.late, 0);
+	atomic_store(&heard.untrue, 0);
 	atomic_store(&heard.lost, false);
 	atomic_store(&heard.gone, false);
 	struct presenter *presenter = presenter_create("kms", &params, &error);
@@ -73,6 +83,7 @@ static void close_presenter(struct presenter *presenter)
 	CHECK_INT(atomic_load(&fake_kms.torn), 0);
 	CHECK_INT(atomic_load(&fake_kms.intruding), 0);
 	CHECK_INT(atomic_load(&heard.disorder), 0);
+	CHECK_INT(atomic_load(&heard.untrue), 0);
 }
 
 static uint32_t next(uint32_t *seed)
@@ -100,6 +111,7 @@ static void show_something(struct presenter *presenter, uint64_t serial, uint32_
 	}
 	fill(&image, (uint32_t)serial * 37);
 	const uint64_t vblank = grid_at_or_after(&grid, clock_now(&real_clock) + impl->get_lead(presenter) + MS);
+	atomic_store(&heard.wanted[serial % WANTED], vblank + choice % 2);
 	if (choice % 7 == 0)
 		impl->set_standby(presenter, &image, serial, serial);
 	else if (choice % 11 == 0 || impl->present(presenter, &image, vblank + choice % 2, serial, serial) < 0)
@@ -129,6 +141,34 @@ static void test_pictures(void)
 	CHECK(atomic_load(&fake_kms.flips) > 0);
 	CHECK(!atomic_load(&heard.lost));
 	close_presenter(presenter);
+}
+
+/* A flip that is refused is tried again at the next vblank, and is late then. */
+static void test_busy(void)
+{
+	struct presenter *presenter = open_presenter();
+	if (!presenter)
+		return;
+	for (uint64_t serial = 1; serial < PICTURES / 8; serial++) {
+		atomic_store(&fake_kms.busy, 1);
+		show_something(presenter, serial, 2);
+		clock_wait_until(&real_clock, clock_now(&real_clock) + 5 * PERIOD_NS);
+	}
+	CHECK(atomic_load(&heard.late) > 0);
+	close_presenter(presenter);
+	atomic_store(&fake_kms.busy, 0);
+}
+
+/* An event of long ago, which lay there to be read, moves nothing. */
+static void test_old_event(void)
+{
+	struct presenter *presenter = open_presenter();
+	if (!presenter)
+		return;
+	atomic_store(&fake_kms.old_event, true);
+	show_pictures(presenter, 1, 5);
+	close_presenter(presenter);
+	atomic_store(&fake_kms.old_event, false);
 }
 
 /* ---- while consoles are switched ---- */
@@ -218,6 +258,8 @@ int main(void)
 	if (pipe2(fake_kms.terminal, O_NONBLOCK | O_CLOEXEC) != 0 || sem_init(&fake_kms.left, 0, 0) != 0)
 		return 1;
 	RUN(test_pictures);
+	RUN(test_busy);
+	RUN(test_old_event);
 	RUN(test_other_console);
 	RUN(test_one_after_another);
 	RUN(test_unplugged);
