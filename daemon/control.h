@@ -19,7 +19,8 @@
  *                           replaces: records the frames received from now on
  *   record-stop             ends the recording; answered when it is on disk:
  *                           {frames, dropped, bytes, error}
- *   set NAME=VALUE ...      settings by name, all or none of them (live.h); those of
+ *   set NAME=VALUE ...      settings by name, all or none of them (live.h), with a
+ *                           backslash before a space within a value; those of
  *                           the picture from the next real frame on; others only
  *                           for the daemon's own user and root (EPERM)
  *   unset NAME ...          takes back what was set: again as the configuration says

@@ -350,20 +350,35 @@ static int take_wish(struct live *live, const struct wish *wish, struct error *e
 	return result;
 }
 
+/* The next one, in place, without the backslashes that make what follows a part of it; NULL at the end. */
+static char *next_word(char **rest)
+{
+	char *from = *rest + strspn(*rest, " "), *word = from, *to = from;
+	if (!*from)
+		return NULL;
+	while (*from && *from != ' ') {
+		from += *from == '\\' && from[1];
+		*to++ = *from++;
+	}
+	*rest = from + (*from == ' ');
+	*to = 0;
+	return word;
+}
+
 static int change(struct live *live, const char *text, bool owner,
 				  int (*one)(struct wish *wish, char *text, struct error *error), struct error *error)
 {
 	struct wish wish = {.asked = live->asked, .owner = owner};
-	char words[1024], *rest = words;
+	char words[2048], *rest = words;
 	int result = 0;
 	memcpy(wish.is_asked, live->is_asked, sizeof(wish.is_asked));
 	if (strlen(text) >= sizeof(words))
 		return error_set(error, -EINVAL, "longer than %zu bytes", sizeof(words) - 1);
 	memcpy(words, text, strlen(text) + 1);
-	char *word = strtok_r(rest, " ", &rest);
+	char *word = next_word(&rest);
 	if (!word)
 		return error_set(error, -EINVAL, one == set_one ? "set: what? NAME=VALUE" : "unset: what? NAME");
-	for (; word && result == 0; word = strtok_r(NULL, " ", &rest))
+	for (; word && result == 0; word = next_word(&rest))
 		result = one(&wish, word, error);
 	if (result < 0)
 		return result;

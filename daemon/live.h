@@ -75,7 +75,8 @@ void live_finish(struct live *live);
 void live_add_owner(struct live *live, const struct live_owner *owner);
 
 /*
- * "NAME=VALUE", or several with spaces between them: all, or none of them. Who is not the `owner` of the daemon may
+ * "NAME=VALUE", or several with spaces between them (a backslash before a space or a backslash that is part of a value):
+ * all, or none of them. Who is not the `owner` of the daemon may
  * change settings of the picture alone: a limit that a client may lift itself is none, and files are written with the
  * daemon's rights. 0, -EINVAL or -EPERM with a sentence that names the setting and what it may be, or an owner's errno
  * and sentence.

@@ -137,7 +137,7 @@ static int send_text(struct control *control, const char *text, int fd, struct e
 		.header = {PURSUIT_MESSAGE_CONTROL, (uint32_t)(sizeof(head) + length), ++control->serial, 0},
 		.text_bytes = (uint32_t)length,
 	};
-	char copy[256];
+	char copy[2048];
 	union {
 		struct cmsghdr align;
 		char bytes[CMSG_SPACE(sizeof(int))];

@@ -11,14 +11,24 @@
 
 #define VERB "set"
 #define CHANGES 32u
+#define REQUEST_BYTES 2048u
 
-/* What the daemon is asked. False: it does not fit. */
+/* What the daemon is asked: words, in which spaces are escaped; a client's name is the rest as it is. False: it does
+ * not fit. */
 static bool write_request(char *request, size_t size, const char *what, const char *const *changes, unsigned count)
 {
+	const bool whole = strncmp(changes[0], "focus=", 6) == 0;
 	size_t used = (size_t)snprintf(request, size, "%s", what);
-	for (unsigned i = 0; i < count && used < size; i++)
-		used += (size_t)snprintf(request + used, size - used, " %s", changes[i]);
-	return used < size;
+	for (unsigned i = 0; i < count && used + 1 < size; i++) {
+		request[used++] = ' ';
+		for (const char *c = changes[i]; *c && used + 2 < size; c++) {
+			if (!whole && (*c == ' ' || *c == '\\'))
+				request[used++] = '\\';
+			request[used++] = *c;
+		}
+	}
+	request[used < size ? used : size - 1] = 0;
+	return used + 2 < size;
 }
 
 /* The settings that were named, as they are now. focus is none of them. */
@@ -43,7 +53,7 @@ int verb_set(int argc, char **argv)
 	bool as_json = false, undo = false;
 	const char *socket = NULL, *changes[CHANGES] = {NULL};
 	unsigned count = 0;
-	char request[256];
+	char request[REQUEST_BYTES];
 	const struct arg_row rows[] = {
 		{"undo", ARG_FLAG, &undo, 0, 0, NULL, NULL,
 		 "take back what was set: NAMEs alone; they are again as the configuration says"},

@@ -55,6 +55,13 @@ class Settings(common.Case):
         self.assertEqual(self.get("blur"), "doubtful\n")
         self.assertIn("no-such", self.set("tee=/no-such/folder/x.y4m", status=1))
 
+    def test_spaces(self):
+        path = self.path("a file with spaces and \\ in it") + "x" * 200
+        self.set("stats=" + path, "cell=16")
+        self.assertEqual(self.get("stats"), path + "\n")
+        self.assertEqual(self.get("cell"), "16\n")
+        self.set("stats=")
+
     def test_get_long(self):
         """Where each value comes from, and what may be set."""
         def origin(name):
