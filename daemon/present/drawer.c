@@ -10,6 +10,7 @@
 #include <sys/prctl.h>
 #include <time.h>
 
+#include "daemon/clock.h"
 #include "daemon/present/blit.h"
 #include "daemon/present/glx_sync.h"
 #include "daemon/worker.h"
@@ -18,7 +19,7 @@
 
 struct drawer {
 	struct window *window;
-	struct clock *clock;
+	struct clock clock; /* one of its own: that of who orders goes with him */
 	struct worker *worker;
 	pthread_mutex_t lock; /* for what is between here and there */
 	pthread_cond_t wake, done;
@@ -77,12 +78,12 @@ static struct drawer_swap carry_out(struct drawer *drawer, uint32_t swaps)
 	for (uint32_t i = 0; i < swaps; i++) {
 		blit_draw(&drawer->blit, drawer->black ? NULL : &drawer->image, drawer->width, drawer->height);
 		if (i == 0)
-			swap.drawing_ns = clock_now(drawer->clock) - drawer->ordered_ns;
+			swap.drawing_ns = clock_now(&drawer->clock) - drawer->ordered_ns;
 		window_swap(drawer->window);
 		swap.source = PRESENTER_TIME_DISPLAY_SERVER;
 		if (!glx_sync_wait(&drawer->sync, &swap.time_ns, &swap.sequence)) {
 			blit_wait(&drawer->blit);
-			swap.time_ns = clock_now(drawer->clock);
+			swap.time_ns = clock_now(&drawer->clock);
 			swap.source = PRESENTER_TIME_ESTIMATED;
 		}
 		times[i] = swap.time_ns;
@@ -96,7 +97,7 @@ static int start(struct drawer *drawer, struct error *error)
 	int result = window_make_current(drawer->window, error);
 	if (result == 0) {
 		result = blit_init(&drawer->blit, window_find_function, error);
-		glx_sync_init(&drawer->sync, drawer->window, clock_now(drawer->clock));
+		glx_sync_init(&drawer->sync, drawer->window, clock_now(&drawer->clock));
 	}
 	return result;
 }
@@ -156,7 +157,7 @@ static void run(void *data)
 
 /* ---- whoever orders ---- */
 
-struct drawer *drawer_create(struct window *window, struct clock *clock, struct error *error)
+struct drawer *drawer_create(struct window *window, struct error *error)
 {
 	struct drawer *drawer = calloc(1, sizeof(*drawer));
 	pthread_condattr_t attributes;
@@ -165,7 +166,7 @@ struct drawer *drawer_create(struct window *window, struct clock *clock, struct 
 		return NULL;
 	}
 	drawer->window = window;
-	drawer->clock = clock;
+	clock_init_real(&drawer->clock);
 	pthread_mutex_init(&drawer->lock, NULL);
 	pthread_condattr_init(&attributes);
 	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
@@ -233,7 +234,7 @@ void drawer_order(struct drawer *drawer, const struct presenter_image *image, ui
 	drawer->width = width ? width : 1;
 	drawer->height = height ? height : 1;
 	drawer->swaps = swaps;
-	drawer->ordered_ns = clock_now(drawer->clock);
+	drawer->ordered_ns = clock_now(&drawer->clock);
 	drawer->under_way = true;
 	pthread_cond_signal(&drawer->wake);
 	pthread_mutex_unlock(&drawer->lock);

@@ -9,7 +9,6 @@
 #ifndef PURSUIT_DRAWER_H
 #define PURSUIT_DRAWER_H
 
-#include "daemon/clock.h"
 #include "daemon/present/window.h"
 
 /* What became of an order. */
@@ -26,7 +25,7 @@ struct drawer_swap {
 struct drawer;
 
 /* Starts the thread, which takes the window's context. NULL with a sentence. */
-struct drawer *drawer_create(struct window *window, struct clock *clock, struct error *error);
+struct drawer *drawer_create(struct window *window, struct error *error);
 /*
  * Waits until it has, at most DRAWER_START_NS. 0, or a negative errno with a sentence, among them -EIO if the display
  * server went away meanwhile and -ETIMEDOUT if it does not answer. Before anything is ordered.

@@ -412,7 +412,7 @@ static int open_all(struct glfw *self, struct error *error)
 	if (!self->window)
 		return -ENODEV;
 	self->has_context = window_get_context(self->window, &self->context);
-	self->drawer = drawer_create(self->window, params->clock, error);
+	self->drawer = drawer_create(self->window, error);
 	if (!self->drawer || drawer_wait_for_start(self->drawer, error) < 0)
 		return -EIO;
 	if (atomic_load(&self->lost))

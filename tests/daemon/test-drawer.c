@@ -65,13 +65,11 @@ bool window_get_glx(struct window *window, void **display, unsigned long *drawab
 	return false;
 }
 
-static struct clock real_clock;
-
 static void test_refused(void)
 {
 	struct window window = {.server = REFUSES};
 	struct error error = {""};
-	struct drawer *drawer = drawer_create(&window, &real_clock, &error);
+	struct drawer *drawer = drawer_create(&window, &error);
 	CHECK(drawer != NULL);
 	CHECK_INT(drawer_wait_for_start(drawer, &error), -EIO);
 	CHECK_STRING(error.text, "no context");
@@ -82,7 +80,7 @@ static void test_server_goes_away(void)
 {
 	struct window window = {.server = GOES_AWAY};
 	struct error error = {""};
-	struct drawer *drawer = drawer_create(&window, &real_clock, &error);
+	struct drawer *drawer = drawer_create(&window, &error);
 	CHECK(drawer != NULL);
 	CHECK_INT(drawer_wait_for_start(drawer, &error), -EIO);
 	CHECK(strstr(error.text, "went away") != NULL);
@@ -102,7 +100,7 @@ static void test_server_hangs(void)
 	sem_t gone;
 	sem_init(&window.again, 0, 0);
 	sem_init(&gone, 0, 0);
-	struct drawer *drawer = drawer_create(&window, &real_clock, &error);
+	struct drawer *drawer = drawer_create(&window, &error);
 	CHECK(drawer != NULL);
 	CHECK_INT(drawer_wait_for_start(drawer, &error), -ETIMEDOUT);
 	CHECK(strstr(error.text, "does not answer") != NULL);
@@ -118,7 +116,6 @@ static void test_server_hangs(void)
 
 int main(void)
 {
-	clock_init_real(&real_clock);
 	RUN(test_refused);
 	RUN(test_server_goes_away);
 	RUN(test_server_hangs);

@@ -110,10 +110,9 @@ window_function window_find_function(const char *name)
 	return NULL;
 }
 
-struct drawer *drawer_create(struct window *window, struct clock *clock, struct error *error)
+struct drawer *drawer_create(struct window *window, struct error *error)
 {
 	(void)window;
-	(void)clock;
 	(void)error;
 	fake_drawer = (struct drawer){.under_way = false};
 	return &fake_drawer;
