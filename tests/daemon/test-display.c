@@ -92,6 +92,7 @@ void presenter_destroy(struct presenter **presenter)
 }
 
 struct user {
+	struct display *display; /* is let go of at once; NULL: when the test says so */
 	struct presenter *presenter;
 	unsigned changes;
 };
@@ -102,6 +103,8 @@ static void on_change(void *data, struct presenter *presenter, bool lost)
 	CHECK(!lost || !presenter);
 	user->presenter = presenter;
 	user->changes++;
+	if (user->display)
+		display_let_go(user->display);
 }
 
 static void on_flip(void *data, const struct presenter *presenter, const struct presenter_flip *flip)
@@ -291,6 +294,63 @@ static void test_better_one_lost(void)
 	fixture_finish(&fixture);
 }
 
+/* Of windows there can be but one: it goes first, and comes back if the other cannot be made. */
+static void test_other_settings(void)
+{
+	struct fixture fixture;
+	struct error error = {""};
+	struct settings fresh;
+	fixture_init(&fixture);
+	fake_impl.kind = PRESENTER_WINDOW;
+	fixture.display = create(&fixture, &error);
+	fixture.user.display = fixture.display;
+	fresh = fixture.settings;
+
+	/* What does not concern a window changes nothing. */
+	snprintf(fresh.connector, sizeof(fresh.connector), "DP-1");
+	CHECK_INT(display_prepare(fixture.display, &fresh, &error), 0);
+	display_commit(fixture.display);
+	CHECK_INT(fixture.user.changes, 1);
+
+	for (unsigned i = 0; i < 100; i++) {
+		const unsigned changes = fixture.user.changes;
+		snprintf(fresh.monitor, sizeof(fresh.monitor), "%u", i);
+		CHECK_INT(display_prepare(fixture.display, &fresh, &error), 0);
+		CHECK_INT(fixture.user.changes, changes + 2); /* none, and the other one */
+		display_commit(fixture.display);
+		CHECK_STRING(fake.params.options.monitor, fresh.monitor);
+		CHECK_INT(fake.living, 1);
+
+		/* It cannot be made: the old one is back. */
+		struct settings wrong = fresh;
+		snprintf(wrong.monitor, sizeof(wrong.monitor), "wrong");
+		fake.failures = 1;
+		CHECK(display_prepare(fixture.display, &wrong, &error) < 0);
+		CHECK_STRING(error.text, "fake: there is none now");
+		CHECK_STRING(fake.params.options.monitor, fresh.monitor);
+		CHECK_INT(fake.living, 1);
+
+		/* It was made, and somebody else could not make his: the old one is back, too. */
+		CHECK_INT(display_prepare(fixture.display, &wrong, &error), 0);
+		CHECK_STRING(fake.params.options.monitor, "wrong");
+		display_abandon(fixture.display);
+		CHECK_STRING(fake.params.options.monitor, fresh.monitor);
+		CHECK(fixture.user.presenter == &fake.presenter);
+		CHECK_INT(fake.living, 1);
+		step(&fixture, 0);
+	}
+	/* And when it is lost, it comes back with the settings that were taken last. */
+	fixture.user.display = NULL;
+	fake.params.lost(fake.params.data, "unplugged");
+	const unsigned changes = fixture.user.changes;
+	step_until_changes(&fixture, changes + 1);
+	display_let_go(fixture.display);
+	step_until_changes(&fixture, changes + 2);
+	CHECK_STRING(fake.params.options.monitor, "99");
+	fake_impl.kind = PRESENTER_MEMORY;
+	fixture_finish(&fixture);
+}
+
 int main(void)
 {
 	RUN(test_lost_and_found);
@@ -299,5 +359,6 @@ int main(void)
 	RUN(test_none_works);
 	RUN(test_better_one);
 	RUN(test_better_one_lost);
+	RUN(test_other_settings);
 	return test_result();
 }
