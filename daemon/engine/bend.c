@@ -72,14 +72,18 @@ static struct bend_vector look_up(const struct plan_dense *before, float x, floa
 								scale * mix(mix(v[0].y, v[1].y, sx), mix(v[2].y, v[3].y, sx), sy)};
 }
 
-struct bend_vector bend_change(const struct plan_dense *now, const struct plan_dense *before, float x, float y,
-							   struct bend_vector u)
+/*
+ * The change a at position (x, y) of a thing with displacement u over the interval `now_s`, from the field before; 0
+ * where that is not believed.
+ */
+static struct bend_vector change_of(const struct plan_dense *before, double now_s, float x, float y,
+									struct bend_vector u)
 {
 	const struct bend_vector none = {0.0f, 0.0f};
 	const float px = x - u.x, py = y - u.y;
 	if (!(px >= 0.0f && py >= 0.0f && px < (float)before->width && py < (float)before->height))
 		return none;
-	const double ratio = now->real_interval_s / before->real_interval_s;
+	const double ratio = now_s / before->real_interval_s;
 	const struct bend_vector v = look_up(before, px, py, (float)ratio, u);
 	const float weight = (float)(2.0 * ratio / (ratio + 1.0));
 	const struct bend_vector a = {weight * (u.x - v.x), weight * (u.y - v.y)};
@@ -98,43 +102,46 @@ static bool reserve(struct bend *bend, uint32_t vertices)
 	return bend->capacity > 0;
 }
 
-static bool is_known(const struct plan_dense *field)
+/* Does the motion of the plan that moves continue that of the field? */
+static bool follows(const struct bend *bend, const struct frame *frame, const struct plan *plan)
 {
-	return field->backward && (field->rest == PLAN_MOVES || field->rest == PLAN_STILL) && field->real_interval_s > 0.0;
+	const struct plan_dense *before = &bend->field;
+	const bool comparable =
+		before->backward && before->real_interval_s > 0.0 && (before->rest == PLAN_MOVES || before->rest == PLAN_STILL);
+	return bend->known && comparable && before->width == plan->width && before->height == plan->height &&
+		   frame->header.motion_kind == PURSUIT_MOTION_BACKWARD && plan->real_interval_s > 0.0;
 }
 
-static bool follows(const struct bend *bend)
+/* The field is still that of the frame before. */
+static void find_changes(struct bend *bend, const struct frame *frame, const struct plan *plan)
 {
-	const struct plan_dense *now = &bend->fields[bend->now], *before = &bend->fields[1 - bend->now];
-	return bend->count > 1 && now->width == before->width && now->height == before->height && is_known(now) &&
-		   is_known(before);
+	const bool curved = follows(bend, frame, plan);
+	for (uint32_t i = 0; i < plan->columns * plan->rows; i++) {
+		const struct plan_vertex *vertex = &plan->vertices[i];
+		bend->straight[i] = (struct bend_vector){vertex->ux, vertex->uy};
+		bend->change[i] = (struct bend_vector){0.0f, 0.0f};
+		if (curved && (vertex->ux != 0.0f || vertex->uy != 0.0f))
+			bend->change[i] = change_of(&bend->field, plan->real_interval_s, vertex->x, vertex->y, bend->straight[i]);
+		bend->bent += bend->change[i].x != 0.0f || bend->change[i].y != 0.0f;
+	}
 }
 
 int bend_begin(struct bend *bend, const struct frame *frame, const struct plan *plan, const struct plan_params *params,
 			   struct error *error)
 {
 	const uint32_t count = plan->columns * plan->rows;
-	bend->now = 1 - bend->now;
+	int result = 0;
 	bend->bent = 0;
-	int result = plan_dense_make(&bend->fields[bend->now], frame, params, error);
-	if (result == 0 && !reserve(bend, count))
+	if (reserve(bend, count))
+		find_changes(bend, frame, plan);
+	else
 		result = error_set(error, -ENOMEM, "out of memory for the change of motion of %u vertices", count);
-	if (result < 0) {
+	if (result == 0)
+		result = plan_dense_make(&bend->field, frame, params, error);
+	bend->known = result == 0;
+	if (result < 0)
 		bend_forget(bend);
-		return result;
-	}
-	bend->count = bend->count ? 2 : 1;
-	const bool curved = follows(bend);
-	for (uint32_t i = 0; i < count; i++) {
-		const struct plan_vertex *vertex = &plan->vertices[i];
-		bend->straight[i] = (struct bend_vector){vertex->ux, vertex->uy};
-		bend->change[i] = (struct bend_vector){0.0f, 0.0f};
-		if (curved && (vertex->ux != 0.0f || vertex->uy != 0.0f))
-			bend->change[i] = bend_change(&bend->fields[bend->now], &bend->fields[1 - bend->now], vertex->x, vertex->y,
-										  bend->straight[i]);
-		bend->bent += bend->change[i].x != 0.0f || bend->change[i].y != 0.0f;
-	}
-	return 0;
+	return result;
 }
 
 void bend_apply(const struct bend *bend, struct plan *plan, double phase)
@@ -148,20 +155,18 @@ void bend_apply(const struct bend *bend, struct plan *plan, double phase)
 
 void bend_forget(struct bend *bend)
 {
-	bend->count = 0;
+	bend->known = false;
 	bend->bent = 0;
 }
 
 uint64_t bend_bytes(const struct bend *bend)
 {
-	return plan_dense_bytes(&bend->fields[0]) + plan_dense_bytes(&bend->fields[1]) +
-		   2 * sizeof(struct bend_vector) * (uint64_t)bend->capacity;
+	return plan_dense_bytes(&bend->field) + 2 * sizeof(struct bend_vector) * (uint64_t)bend->capacity;
 }
 
 void bend_finish(struct bend *bend)
 {
-	for (int i = 0; i < 2; i++)
-		plan_dense_finish(&bend->fields[i]);
+	plan_dense_finish(&bend->field);
 	free(bend->straight);
 	free(bend->change);
 	*bend = (struct bend){0};

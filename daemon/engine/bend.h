@@ -19,9 +19,8 @@ struct bend_vector {
 
 /* Memory that is kept from frame to frame; zeroed: nothing is known of a frame before. */
 struct bend {
-	struct plan_dense fields[2];
-	uint32_t now;                          /* index of the frame taken last */
-	uint32_t count;                        /* frames known, 0 to 2 */
+	struct plan_dense field;               /* of the frame taken last */
+	bool known;                            /* there is one */
 	struct bend_vector *straight, *change; /* u and a, by vertex of the plan; pixels per interval */
 	uint32_t capacity;
 	uint32_t bent; /* vertices with a change */
@@ -36,13 +35,6 @@ int bend_begin(struct bend *bend, const struct frame *frame, const struct plan *
 
 /* Makes the plan's displacements those of u_p, p = phase. For the plan of bend_begin() only. */
 void bend_apply(const struct bend *bend, struct plan *plan, double phase);
-
-/*
- * The change a at position (x, y) of a thing with displacement u in the field `now`, from the field before; 0 where
- * that is not believed.
- */
-struct bend_vector bend_change(const struct plan_dense *now, const struct plan_dense *before, float x, float y,
-							   struct bend_vector u);
 
 /* What comes next has nothing to do with what was before. */
 void bend_forget(struct bend *bend);
