@@ -18,16 +18,40 @@ void output_wake_locked(struct output *output)
 	pthread_cond_signal(&output->wake);
 }
 
-void output_push_event(struct output *output, const struct output_event *event)
+static void wake_main(const struct output *output)
 {
 	const uint64_t one = 1;
+	/* A full counter wakes just as well. */
+	if (write(output->event_fd, &one, sizeof(one)) < 0 && errno != EAGAIN)
+		log_error(output->params.log, "eventfd: %s", strerror(errno));
+}
+
+void output_push_event(struct output *output, const struct output_event *event)
+{
 	pthread_mutex_lock(&output->lock);
 	if (output->event_count < OUTPUT_EVENTS)
 		output->events[output->event_count++] = *event;
 	pthread_mutex_unlock(&output->lock);
-	/* A full counter wakes just as well. */
-	if (write(output->event_fd, &one, sizeof(one)) < 0 && errno != EAGAIN)
-		log_error(output->params.log, "eventfd: %s", strerror(errno));
+	wake_main(output);
+}
+
+void output_break_stream(struct output *output, struct stream *stream, const struct refusal *refusal)
+{
+	pthread_mutex_lock(&output->lock);
+	stream->broken = *refusal;
+	stream->is_broken = true;
+	pthread_mutex_unlock(&output->lock);
+	wake_main(output);
+}
+
+struct output_event output_stream_event(enum output_event_kind kind, const struct stream *stream,
+										const struct refusal *refusal)
+{
+	return (struct output_event){.kind = kind,
+								 .client_id = stream->client_id,
+								 .stream_id = stream->stream_id,
+								 .stream = stream->number,
+								 .refusal = *refusal};
 }
 
 /* ---- called by the display ---- */
@@ -228,16 +252,37 @@ int output_event_fd(const struct output *output)
 	return output->event_fd;
 }
 
+/* With the lock. */
+static bool take_event(struct output *output, struct output_event *event)
+{
+	if (output->event_count == 0)
+		return false;
+	*event = output->events[0];
+	output->event_count--;
+	memmove(&output->events[0], &output->events[1], output->event_count * sizeof(output->events[0]));
+	return true;
+}
+
+/* With the lock: it is kept with the stream, so that it needs no room and goes with it. */
+static bool take_broken(struct output *output, struct output_event *event)
+{
+	for (uint32_t i = 0; i < output->stream_count; i++) {
+		struct stream *stream = output->streams[i];
+		if (!stream->is_broken)
+			continue;
+		stream->is_broken = false;
+		*event = output_stream_event(OUTPUT_STREAM_BROKEN, stream, &stream->broken);
+		return true;
+	}
+	return false;
+}
+
 bool output_next_event(struct output *output, struct output_event *event)
 {
 	uint64_t count;
 	pthread_mutex_lock(&output->lock);
-	const bool any = output->event_count > 0;
-	if (any) {
-		*event = output->events[0];
-		output->event_count--;
-		memmove(&output->events[0], &output->events[1], output->event_count * sizeof(output->events[0]));
-	} else if (read(output->event_fd, &count, sizeof(count)) < 0) {
+	const bool any = take_event(output, event) || take_broken(output, event);
+	if (!any && read(output->event_fd, &count, sizeof(count)) < 0) {
 		/* Nothing to clear. */
 	}
 	pthread_mutex_unlock(&output->lock);

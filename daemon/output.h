@@ -36,7 +36,7 @@
 /* What the render thread tells main. */
 enum output_event_kind {
 	OUTPUT_FRAME_REFUSED, /* the stream goes on */
-	OUTPUT_STREAM_BROKEN, /* nothing more is taken from it: end it */
+	OUTPUT_STREAM_BROKEN, /* nothing more is taken from it: end it. Always told, whatever else there is to tell */
 	OUTPUT_KEY,           /* a key was pressed in the presenter's window */
 };
 
@@ -44,6 +44,7 @@ struct output_event {
 	enum output_event_kind kind;
 	uint64_t client_id;
 	uint64_t stream_id;
+	uint64_t stream; /* its number: the client may have closed it since, and opened another with this id */
 	struct refusal refusal;
 	struct presenter_key key;
 };

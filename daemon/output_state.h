@@ -86,8 +86,12 @@ void output_wish_settings(struct output *output, const struct settings *settings
 /* Any thread: the tee (NULL: none), an output's, is to be closed without anybody waiting for it. */
 void output_close_tee(void *output, struct tee *tee);
 
-/* Any thread: an event for main. */
+/* Any thread: an event for main. Lost if too many wait. */
 void output_push_event(struct output *output, const struct output_event *event);
+/* The render thread: main is to end this stream. Never lost. */
+void output_break_stream(struct output *output, struct stream *stream, const struct refusal *refusal);
+struct output_event output_stream_event(enum output_event_kind kind, const struct stream *stream,
+										const struct refusal *refusal);
 
 /* The render thread; `output` is a struct output. */
 void *output_run(void *output);

@@ -28,13 +28,13 @@ static void record(void *data, const struct frame *frame)
 static void report(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal)
 {
 	struct output *output = data;
-	const struct output_event event = {
-		.kind = kind, .client_id = stream->client_id, .stream_id = stream->stream_id, .refusal = *refusal};
-	if (kind == OUTPUT_STREAM_BROKEN)
+	if (kind == OUTPUT_STREAM_BROKEN) {
 		atomic_store(&stream->ended, true);
-	else if (!log_limit_allows(&stream->log_limit, clock_now(output->params.clock)))
-		return;
-	output_push_event(output, &event);
+		output_break_stream(output, stream, refusal);
+	} else if (log_limit_allows(&stream->log_limit, clock_now(output->params.clock))) {
+		const struct output_event event = output_stream_event(kind, stream, refusal);
+		output_push_event(output, &event);
+	}
 }
 
 static void engine_made(void *data, const struct engine_info *info)

@@ -185,7 +185,7 @@ static void on_output_event(void *data, uint32_t events)
 		}
 		struct client *client = find_client(server, event.client_id);
 		struct client_stream *stream = client ? client_find_stream(client, event.stream_id) : NULL;
-		if (!stream)
+		if (!stream || stream->stream->number != event.stream)
 			continue;
 		client_refuse(client, 0, event.stream_id, false, &event.refusal);
 		if (event.kind == OUTPUT_STREAM_BROKEN)

@@ -51,7 +51,7 @@ static void push_event(struct output *output, enum output_event_kind kind, const
 	const uint64_t one = 1;
 	if (output->event_count < OUTPUT_EVENTS)
 		output->events[output->event_count++] =
-			(struct output_event){kind, stream->client_id, stream->stream_id, *refusal};
+			(struct output_event){kind, stream->client_id, stream->stream_id, stream->number, *refusal};
 	FUZZ_EXPECT(write(output->event_fd, &one, sizeof(one)) == (ssize_t)sizeof(one));
 }
 
