@@ -12,6 +12,7 @@ import time
 import common
 
 TOP = os.path.dirname(os.path.dirname(os.environ["MAN_SOURCES"]))
+BUILD = os.path.dirname(os.path.dirname(os.path.dirname(common.PURSUIT)))
 PURSUITD, EXAMPLE = os.environ["PURSUITD"], os.environ["EXAMPLE_MEMORY"]
 
 # Later options go before earlier ones, so these keep everything but the amount.
@@ -35,13 +36,15 @@ NOT_RUN = {
     "tests/": "is about the tests; that the program is there is looked at",
     "build-check/": "is about the tests, and long",
     "meson test": "is about the tests",
+    "meson setup": "installs; tests/install does so into a root of its own",
+    "systemctl ": "wants a manager of services; tests/systemd looks at the units",
 }
 # An option of a verb is named in a sentence, without what it works on.
 NAMED = {"pursuit replay --json", "pursuit replay --predict"}
 # They fail where small pictures cannot be as good, or a machine lacks something.
 MAY_FAIL = ("pursuit doctor", "pursuit set focus=", "pursuit replay walk.pursuit --every 2 --fail-under", "pursuit replay colonnade.pursuit --every 2",
             "pursuit report --scenes colonnade --methods grid --n 2 --fail-under")
-COMMAND = r"(?:pursuitd?|\./demo|\./check|tests/[a-z/]+|build-check/\S+|meson test|sudo|echo 'SUB\S*|ssh)(?: [^`\n]*)?"
+COMMAND = r"(?:pursuitd?|\./demo|\./check|tests/[a-z/]+|build-check/\S+|meson test|meson setup|systemctl|sudo|echo 'SUB\S*|ssh)(?: [^`\n]*)?"
 
 
 def commands_of_page(path):
@@ -146,6 +149,15 @@ class Commands(common.Case):
         result = self.shell(self.smaller(command))
         allowed = (0, 1) if command.startswith(MAY_FAIL) else (0,)
         self.assertIn(result.returncode, allowed, f"{command}\n{result.stdout[-600:]}{result.stderr[-1200:]}")
+
+    def test_what_the_whole_report_builds(self):
+        """tests/report names targets to build, and runs programs: those that there are."""
+        with open(os.path.join(TOP, "tests/report"), encoding="utf-8") as script:
+            named = set(re.findall(r"(?:\s|\$BUILD/)(tests/[a-z]+/[a-z-]+)", script.read()))
+        with open(os.path.join(BUILD, "build.ninja"), encoding="utf-8") as targets:
+            built = set(re.findall(r"(?m)^build (\S+):", targets.read()))
+        self.assertEqual(len(named), 5)
+        self.assertEqual(named - built, set())
 
     def test_all(self):
         self.prepare()
