@@ -30,6 +30,7 @@ NOT_RUN = {
     "./demo --present glfw": "wants a desktop; tests/daemon shows windows",
     "pursuitd --present kms": "wants a bare display; tests/rig has one",
     "pursuit latency --loopback": "wants a wire between two lines; tests/rig has one",
+    "pursuit set gpio-line=": "wants a GPIO chip; tests/rig has one",
     "sudo ": "changes the machine",
     "echo 'SUBSYSTEM": "changes the machine",
     "ssh ": "wants another machine",
