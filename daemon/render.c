@@ -207,6 +207,9 @@ static void say_changes(struct render *render, const struct settings *settings)
 	char message[96] = "", before[1024], after[1024];
 	for (const struct option_row *row = option_table(); row->name; row++) {
 		const size_t used = strlen(message);
+		/* Of files and lines nothing is written over the picture, which may be what is recorded. */
+		if (!option_is_of_picture(row))
+			continue;
 		settings_get(render->settings, row->name, before, sizeof(before));
 		settings_get(settings, row->name, after, sizeof(after));
 		if (strcmp(before, after) != 0)
