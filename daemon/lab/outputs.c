@@ -82,7 +82,8 @@ bool outputs_flip(struct lab *lab, const struct pattern_flip *flip)
 		return false;
 	if ((double)change.pulse_ns > PULSE_PERIODS * lab->period_ns)
 		change.pulse_ns = (uint64_t)(PULSE_PERIODS * lab->period_ns);
-	schedule_add(&lab->schedule, &change);
+	/* One that is dropped is an edge that the row waits for in vain. */
+	pattern_schedule(&lab->pattern, &lab->schedule, &change);
 	return true;
 }
 

@@ -12,6 +12,11 @@ uint32_t pattern_lines(enum pattern_kind kind)
 	return kind == PATTERN_THREE_LINES ? 3 : 1;
 }
 
+static bool is_pulse(enum pattern_kind kind)
+{
+	return kind == PATTERN_PULSE || kind == PATTERN_PULSE_REAL || kind == PATTERN_THREE_LINES;
+}
+
 static void pulse(const struct pattern *pattern, struct pattern_change *change, uint32_t mask)
 {
 	change->mask = change->levels = mask;
@@ -65,12 +70,12 @@ bool pattern_add_flip(struct pattern *pattern, const struct pattern_flip *flip, 
 	return change->mask != 0;
 }
 
-void schedule_add(struct schedule *schedule, const struct pattern_change *change)
+bool schedule_add(struct schedule *schedule, const struct pattern_change *change)
 {
 	uint32_t place = schedule->count;
 	if (schedule->count == SCHEDULE_CHANGES) {
 		schedule->dropped++;
-		return;
+		return false;
 	}
 	while (place > 0 && schedule->changes[place - 1].time_ns > change->time_ns)
 		place--;
@@ -78,6 +83,15 @@ void schedule_add(struct schedule *schedule, const struct pattern_change *change
 			(schedule->count - place) * sizeof(schedule->changes[0]));
 	schedule->changes[place] = *change;
 	schedule->count++;
+	return true;
+}
+
+bool pattern_schedule(struct pattern *pattern, struct schedule *schedule, const struct pattern_change *change)
+{
+	const bool room = schedule_add(schedule, change);
+	if (!room && !is_pulse(pattern->kind))
+		pattern->levels ^= change->mask;
+	return room;
 }
 
 uint64_t schedule_next(const struct schedule *schedule)

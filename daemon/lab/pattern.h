@@ -68,7 +68,11 @@ struct schedule {
 	uint64_t dropped; /* by schedule_add() on a full one */
 };
 
-void schedule_add(struct schedule *schedule, const struct pattern_change *change);
+/* False: there is no room, it is dropped. */
+bool schedule_add(struct schedule *schedule, const struct pattern_change *change);
+/* The same for what pattern_add_flip() has just given: if it is dropped the pattern goes on from the levels before it.
+ */
+bool pattern_schedule(struct pattern *pattern, struct schedule *schedule, const struct pattern_change *change);
 /* When the next one is due; UINT64_MAX for none. */
 uint64_t schedule_next(const struct schedule *schedule);
 /* Takes the first that is due; changes that are late come one by one, so that no edge is lost. False: none is due. */

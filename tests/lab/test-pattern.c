@@ -110,6 +110,30 @@ static void test_schedule_full(void)
 	CHECK_INT(taken, SCHEDULE_CHANGES);
 }
 
+/* A change for which there was no room was not made: those after it begin where the lines are. */
+static void test_dropped_change(void)
+{
+	static const enum pattern_kind kinds[] = {PATTERN_COUNTER, PATTERN_TOGGLE};
+	for (size_t k = 0; k < 2; k++) {
+		struct pattern pattern = {.kind = kinds[k], .lines = kinds[k] == PATTERN_COUNTER ? 8 : 1};
+		struct schedule schedule = {0};
+		struct pattern_change change;
+		uint32_t levels = 0;
+		for (uint64_t i = 1; i < SCHEDULE_CHANGES + 6; i++) {
+			const struct pattern_flip flip = flip_of(i);
+			CHECK(pattern_add_flip(&pattern, &flip, &change));
+			CHECK_INT(pattern_schedule(&pattern, &schedule, &change), i <= SCHEDULE_CHANGES);
+		}
+		CHECK_INT(schedule.dropped, 5);
+		while (schedule_take(&schedule, UINT64_MAX, &change))
+			levels = (levels & ~change.mask) | change.levels;
+		CHECK_INT(levels, pattern.levels);
+		const struct pattern_flip flip = flip_of(0x80);
+		CHECK(pattern_add_flip(&pattern, &flip, &change));
+		CHECK_INT((levels & ~change.mask) | change.levels, kinds[k] == PATTERN_COUNTER ? 0x80 : levels ^ 1);
+	}
+}
+
 int main(void)
 {
 	RUN(test_patterns);
@@ -118,5 +142,6 @@ int main(void)
 	RUN(test_lines);
 	RUN(test_schedule_order);
 	RUN(test_schedule_full);
+	RUN(test_dropped_change);
 	return test_result();
 }
