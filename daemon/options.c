@@ -160,9 +160,9 @@ static const struct option_row rows[] = {
 		 "A vblank is so long after its edge."),
 	NUMBER(lab.debounce_us, "debounce-us", OPTION_LAB, "0", 0, 1000000, "us",
 		   "Edges of the photodiode so soon after one that counted are bounce."),
-	NUMBER(lab.photon_least_us, "photon-least-us", OPTION_LAB, "0", 0, 1000000, "us",
+	NUMBER(lab.photon_least_us, "photon-least-us", OPTION_LAB, "0", 0, 800000, "us",
 		   "Light comes no sooner after its flip."),
-	NUMBER(lab.photon_most_us, "photon-most-us", OPTION_LAB, "0", 0, 2000000, "us",
+	NUMBER(lab.photon_most_us, "photon-most-us", OPTION_LAB, "0", 0, 900000, "us",
 		   "Light comes sooner than this after its flip; 0: a refresh after photon-least-us, two with a patch."),
 	CHOICE(
 		lab.patch, "patch", OPTION_LAB, "off", patch_choices,

@@ -24,8 +24,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#define MATCH_FLIPS 128u
-#define MATCH_EDGES 128u
+#define MATCH_FLIPS 512u /* of the longest window */
+#define MATCH_EDGES 512u
 
 enum match_want {
 	MATCH_NONE = 0, /* the light does not change at this flip */

@@ -15,7 +15,9 @@
 
 #include "daemon/lab/points.h"
 
-#define ROWS 128u
+/* As many as come while the oldest waits, at 500 Hz. */
+#define ROWS 512u
+/* Longer than the longest window for light, by the photon options' limits and what its edge may be late. */
 #define ROWS_WAIT_NS UINT64_C(1000000000)
 
 struct row {

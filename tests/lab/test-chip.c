@@ -5,6 +5,8 @@
 
 #include "daemon/lab/chip.h"
 #include "daemon/lab/lab.h"
+#include "daemon/lab/match.h"
+#include "daemon/lab/rows.h"
 #include "daemon/options.h"
 #include "tests/test.h"
 
@@ -68,8 +70,28 @@ static void test_refusals(void)
 	check_refused((const char *const[][2]){{"latency-log", "x.log"}, {NULL}}, "ends in neither .csv nor .bin");
 }
 
+/* No window is longer than a row waits for its light, at any refresh rate up to 500 Hz. */
+static void test_windows(void)
+{
+	static const struct {
+		const char *option, *longest, *longer;
+	} rows[] = {{"photon-most-us", "900000", "900001"}, {"photon-least-us", "800000", "800001"}};
+	const uint64_t hold_ns = 50000000, two_slow_refreshes_ns = 100000000;
+	struct settings all;
+	settings_defaults(&all);
+	for (size_t i = 0; i < 2; i++) {
+		CHECK_INT(settings_set(&all, rows[i].option, rows[i].longest, &error), 0);
+		CHECK(settings_set(&all, rows[i].option, rows[i].longer, &error) < 0);
+	}
+	CHECK(all.lab.photon_most_us * UINT64_C(1000) + hold_ns <= ROWS_WAIT_NS);
+	CHECK(all.lab.photon_least_us * UINT64_C(1000) + two_slow_refreshes_ns + hold_ns <= ROWS_WAIT_NS);
+	CHECK(ROWS > ROWS_WAIT_NS / 2000000);
+	CHECK(MATCH_FLIPS > ROWS_WAIT_NS / 2000000);
+}
+
 int main(void)
 {
+	RUN(test_windows);
 	RUN(test_lists);
 	RUN(test_refusals);
 	return test_result();
