@@ -387,5 +387,5 @@ uint64_t frame_layout(struct pursuit_frame_header *header)
 		}
 		end += align(plane->size);
 	}
-	return end;
+	return end <= PURSUIT_MAX_FRAME_BYTES ? end : 0;
 }

@@ -52,7 +52,7 @@ int frame_find_plane(const struct pursuit_frame_header *header, uint32_t role);
  * Lays out packed planes in a header whose planes[].role, format, width and
  * height are set: fills storage, stride (rows aligned to 64 bytes), offset,
  * size. A plane of an unknown format keeps its stride and size. Returns the
- * bytes that all planes take together, 0 if a size is beyond its limit.
+ * bytes that all planes take together, 0 if a size, or all of them, is beyond its limit.
  */
 uint64_t frame_layout(struct pursuit_frame_header *header);
 

@@ -9,7 +9,8 @@
 uint64_t recording_packed_bytes(const struct frame *frame)
 {
 	struct pursuit_frame_header header = frame->header;
-	return sizeof(header) + frame_layout(&header);
+	const uint64_t bytes = frame_layout(&header);
+	return bytes ? sizeof(header) + bytes : 0;
 }
 
 /* Bytes of a row that mean something; the rest up to the stride is written as zero. */

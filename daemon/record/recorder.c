@@ -142,7 +142,7 @@ static struct item *take_spare(struct recorder *recorder, uint64_t bytes)
 static bool has_room(const struct recorder *recorder, uint64_t bytes)
 {
 	const struct recorder_stats *stats = &recorder->stats;
-	if (stats->failed)
+	if (stats->failed || bytes == 0)
 		return false;
 	if (stats->queued_frames == 0)
 		return true;

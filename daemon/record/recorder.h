@@ -38,7 +38,8 @@ struct recorder *recorder_create(const struct recorder_params *params, struct er
 
 /*
  * Copies header and planes. Never waits for the disk: false, and counted, if
- * the queue is full, memory is short or writing has failed. One thread pushes.
+ * the queue is full, memory is short, the frame is larger than a recording holds
+ * (recording_packed_bytes()) or writing has failed. One thread pushes.
  * A frame larger than the whole queue is still taken when the queue is empty.
  */
 bool recorder_push(struct recorder *recorder, const struct frame *frame, uint64_t time_ns);

@@ -32,7 +32,7 @@ struct recording_writer_params {
  * Creates the file and writes header and INFO; what a file holds already, from where it stands on, is cut off.
  * The file is locked (flock) until it is closed: one that another writer is at is left as it is. A file size limit
  * (RLIMIT_FSIZE) is met like a full disk if the program ignores or blocks SIGXFSZ. NULL with a sentence (disk full,
- * permission, another writer, ...).
+ * permission, another writer, a file that is open for appending and would be cut, ...).
  */
 struct recording_writer *recording_writer_create(const struct recording_writer_params *params, struct error *error);
 
@@ -47,7 +47,9 @@ int recording_writer_frame(struct recording_writer *writer, const struct frame *
 /*
  * The same in two steps, so that one thread can copy a frame and another write
  * it: recording_pack() fills recording_packed_bytes() bytes (header, then the
- * planes laid out anew; any alignment). Frames are validated before.
+ * planes laid out anew; any alignment). Frames are validated before. 0 bytes: its
+ * rows, at multiples of 64 bytes, take more than PURSUIT_MAX_FRAME_BYTES, which
+ * no reader takes; it cannot be packed, and recording_writer_frame() gives -EFBIG.
  */
 uint64_t recording_packed_bytes(const struct frame *frame);
 void recording_pack(const struct frame *frame, uint8_t *packed);

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 #include <xxhash.h>
@@ -164,9 +165,16 @@ static void writer_free(struct recording_writer *writer)
 static int take_file(struct recording_writer *writer, struct error *error)
 {
 	const off_t start = lseek(writer->fd, 0, SEEK_CUR);
+	struct stat status;
 	writer->start = start > 0 ? start : 0;
 	if (flock(writer->fd, LOCK_EX | LOCK_NB) < 0 && errno == EWOULDBLOCK)
 		return error_set(error, -EBUSY, "%s: another program is recording into it", writer->path);
+	const int flags = fcntl(writer->fd, F_GETFL);
+	if (flags >= 0 && (flags & O_APPEND) && fstat(writer->fd, &status) == 0 && status.st_size > writer->start)
+		return error_set(error, -EEXIST,
+						 "%s: is open for appending and holds %lld bytes, which a recording would cut off; open it "
+						 "without O_APPEND, or an empty file",
+						 writer->path, (long long)status.st_size);
 	if (ftruncate(writer->fd, writer->start) < 0 && errno != EINVAL)
 		return write_error(writer, -errno, error);
 	return 0;
@@ -247,6 +255,12 @@ int recording_writer_frame(struct recording_writer *writer, const struct frame *
 						   struct error *error)
 {
 	const uint64_t bytes = recording_packed_bytes(frame);
+	if (bytes == 0)
+		return error_set(
+			error, -EFBIG,
+			"%s: a frame's planes in rows at multiples of %u bytes take more than a recording holds, at most "
+			"%" PRIu64,
+			writer->path, PURSUIT_PLANE_ALIGNMENT, PURSUIT_MAX_FRAME_BYTES);
 	if (!reserve(&writer->raw, &writer->raw_size, bytes))
 		return error_set(error, -ENOMEM, "%s: out of memory for a frame of %" PRIu64 " bytes", writer->path, bytes);
 	recording_pack(frame, writer->raw);

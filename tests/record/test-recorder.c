@@ -213,6 +213,28 @@ static void test_cannot_create(void)
 	CHECK(strstr(error.text, "/no/such/folder/x.pursuit") != NULL);
 }
 
+/* A file that is open for appending is not meant to be cut; in an empty one nothing is lost. */
+static void test_open_for_appending(void)
+{
+	struct error error = {""};
+	const char *path = sample_path("kept.pursuit");
+	size_t after = 0;
+	sample_write_file(path, path, 16);
+	for (off_t offset = 0; offset <= 8; offset += 8) {
+		const struct recorder_params params = {.writer = {.fd = open(path, O_WRONLY | O_APPEND | O_CLOEXEC)}};
+		CHECK_INT(lseek(params.writer.fd, offset, SEEK_SET), offset);
+		CHECK(!recorder_create(&params, &error));
+		CHECK(strstr(error.text, "for appending") != NULL);
+		free(sample_read_file(path, &after));
+		CHECK_INT(after, 16);
+	}
+	const int fd = open(sample_path("new.pursuit"), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+	const struct recorder_params params = {.writer = {.fd = fd}};
+	struct recorder *recorder = recorder_create(&params, &error);
+	CHECK(recorder != NULL);
+	CHECK_INT(recorder_destroy(&recorder, NULL, &error), 0);
+}
+
 int main(void)
 {
 	RUN(test_all_frames_in_order);
@@ -221,6 +243,7 @@ int main(void)
 	RUN(test_level_follows_the_queue);
 	RUN(test_disk_fills_up);
 	RUN(test_cannot_create);
+	RUN(test_open_for_appending);
 	sample_folder_remove();
 	return test_result();
 }

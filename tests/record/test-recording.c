@@ -523,6 +523,34 @@ static void test_open_file_is_replaced(void)
 	recording_reader_destroy(&reader);
 }
 
+/* A good frame whose rows, at multiples of 64 bytes, would take more than a reader takes: refused, and the next is not.
+ */
+static void test_beyond_the_limit(void)
+{
+	struct error error = {""};
+	struct frame frame = {.header = samples[0].frame.header};
+	frame.header.plane_count = 2;
+	for (uint32_t i = 0; i < 2; i++) {
+		struct pursuit_plane *plane = &frame.header.planes[i];
+		plane->width = i ? 8193 : 8191;
+		plane->height = 16384;
+		plane->format = i ? PURSUIT_FORMAT_DEPTH32F : PURSUIT_FORMAT_BGRA8;
+		plane->stride = (uint64_t)plane->width * 4;
+		plane->size = plane->stride * plane->height;
+	}
+	CHECK_INT(frame_validate(&frame.header, PURSUIT_MAX_FRAME_BYTES, NULL, NULL, &error), 0);
+	CHECK_INT(recording_packed_bytes(&frame), 0);
+	const struct recording_writer_params params = {.path = sample_path("huge.pursuit")};
+	struct recording_writer *writer = recording_writer_create(&params, &error);
+	CHECK_INT(recording_writer_frame(writer, &frame, 1, &error), -EFBIG);
+	CHECK(strstr(error.text, "huge.pursuit") && strstr(error.text, "at most 1073741824"));
+	CHECK_INT(recording_writer_frame(writer, &samples[1].frame, 2, &error), 0);
+	CHECK_INT(recording_writer_close(&writer, &error), 0);
+	struct recording_reader *reader = open_reader(params.path, 0, &error);
+	CHECK_INT(play(reader, true), 1);
+	recording_reader_destroy(&reader);
+}
+
 int main(void)
 {
 	for (unsigned i = 0; i < FRAMES; i++)
@@ -542,6 +570,7 @@ int main(void)
 	RUN(test_cannot_create);
 	RUN(test_one_writer_a_file);
 	RUN(test_open_file_is_replaced);
+	RUN(test_beyond_the_limit);
 	for (unsigned i = 0; i < FRAMES; i++)
 		sample_finish(&samples[i]);
 	sample_folder_remove();
