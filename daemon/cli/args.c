@@ -33,7 +33,7 @@ int args_failed(const char *verb, const char *format, ...)
 	return STATUS_FAILED;
 }
 
-int args_check_method(const char *verb, const char *method)
+int args_check_method(const char *verb, const char *option, const char *method)
 {
 	char names[200] = "";
 	for (const struct engine_method_info *info = engine_methods(); info->name; info++) {
@@ -42,7 +42,7 @@ int args_check_method(const char *verb, const char *method)
 			return STATUS_DONE;
 		snprintf(names + used, sizeof(names) - used, "%s%s", used ? ", " : "", info->name);
 	}
-	return args_wrong(verb, "--method is %s, must be one of %s", method, names);
+	return args_wrong(verb, "%s is %s, must be one of %s", option, method, names);
 }
 
 unsigned args_distance(const char *a, const char *b)

@@ -71,8 +71,8 @@ __attribute__((format(printf, 2, 3))) int args_wrong(const char *verb, const cha
 /* "pursuit VERB: sentence" on stderr. Gives STATUS_FAILED back. */
 __attribute__((format(printf, 2, 3))) int args_failed(const char *verb, const char *format, ...);
 
-/* STATUS_DONE, or a usage error that lists the methods of the engine. */
-int args_check_method(const char *verb, const char *method);
+/* STATUS_DONE, or a usage error about this option, "--method", that lists the methods of the engine. */
+int args_check_method(const char *verb, const char *option, const char *method);
 
 bool args_read_rate(const char *text, struct arg_rate *rate);
 

@@ -188,7 +188,7 @@ static int plan_methods(struct report *report)
 		return status;
 	}
 	for (const char *list = report->options.methods; status == STATUS_DONE && report_next_item(&list, item);) {
-		status = args_check_method(VERB, item);
+		status = args_check_method(VERB, "--methods", item);
 		if (status == STATUS_DONE)
 			status = add_variant(report, item, NULL, true);
 		if (status == STATUS_DONE)

@@ -456,6 +456,20 @@ static int run_demo(struct demo *demo)
 	return result < 0 || ended < 0 ? STATUS_FAILED : STATUS_DONE;
 }
 
+static int check_methods(const struct demo_options *options)
+{
+	int status = args_check_method(VERB, "--method", options->settings.method);
+	const char *rest = options->methods;
+	while (status == STATUS_DONE && rest) {
+		char name[64];
+		const size_t length = strcspn(rest, ",");
+		snprintf(name, sizeof(name), "%.*s", (int)(length < sizeof(name) ? length : sizeof(name) - 1), rest);
+		status = args_check_method(VERB, "--methods", name);
+		rest = rest[length] ? rest + length + 1 : NULL;
+	}
+	return status;
+}
+
 int verb_demo(int argc, char **argv)
 {
 	struct demo demo = {.options = {.scene = "colonnade", .out = "out-demo", .seconds = 60, .method_seconds = 60}};
@@ -468,7 +482,7 @@ int verb_demo(int argc, char **argv)
 		scene_source_unknown(demo.options.scene, &error);
 		return args_wrong(VERB, "%s", error.text);
 	}
-	status = args_check_method(VERB, demo.options.settings.method);
+	status = check_methods(&demo.options);
 	if (status != STATUS_DONE)
 		return status;
 	status = run_demo(&demo);

@@ -126,7 +126,7 @@ static int check_options(struct replay_options *options, struct replay *replay)
 	if (options->expect_tolerance && !expect_read_tolerance(options->expect_tolerance, &tolerance))
 		return args_wrong(VERB, "--expect-tolerance is %s, must be such as 2 or 45dB", options->expect_tolerance);
 	replay->expect = tolerance;
-	return args_check_method(VERB, options->settings.method);
+	return args_check_method(VERB, "--method", options->settings.method);
 }
 
 /* ---- what is done with each picture ---- */

@@ -75,6 +75,13 @@ class Demo(common.Case):
         report = json.loads(self.demo("--seconds", "1", "--fps", "40", "--refresh", "90", "--json").stdout)
         self.assertEqual((report["fps"], report["refresh"]), (40, 90))
 
+    def test_each_method_is_known_before_it_starts(self):
+        for option, value, wrong in (("--method", "sharp", "sharp"), ("--methods", "hold,sharp,grid", "sharp"), ("--methods", "hold,", "")):
+            result = common.run("demo", option, value, "--seconds", "1", "--out", self.path("out"))
+            self.assertEqual(result.returncode, 2, result.stderr)
+            self.assertIn(f"{option} is {wrong}, must be one of hold, ", result.stderr)
+            self.assertFalse(os.path.exists(self.path("out")))
+
     def test_interrupt_still_reports(self):
         demo = self.start("--seconds", "600")
         time.sleep(2)
