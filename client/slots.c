@@ -18,13 +18,20 @@
 
 static struct shim_slots *allocate(const struct shim_layout *layout, uint32_t slot_count)
 {
+	size_t planes_bytes;
+
+	if (__builtin_mul_overflow(layout->slot_bytes, slot_count, &planes_bytes)) {
+		errno = ENOMEM;
+		return NULL;
+	}
+
 	struct shim_slots *slots = calloc(1, sizeof(*slots));
 
 	if (slots) {
 		slots->control_fd = -1;
 		slots->planes_fd = -1;
 		slots->slot_count = slot_count;
-		slots->planes_bytes = (size_t)(layout->slot_bytes * slot_count);
+		slots->planes_bytes = planes_bytes;
 	}
 	return slots;
 }

@@ -3,6 +3,7 @@
 
 /* The exchange of slots: every order of events up to a depth, two threads at full speed, and a lying daemon. */
 
+#include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
 #include <stdbool.h>
@@ -283,6 +284,21 @@ static void test_memory_is_sealed(void)
 	shim_slots_destroy(NULL);
 }
 
+/* What an address cannot count is not there: a product that wraps would be memory that is too small. */
+static void test_too_large(void)
+{
+	struct shim_layout layout = small_layout(4);
+
+	layout.slot_bytes = (UINT64_C(1) << 62) + 4096;
+	errno = 0;
+	CHECK(shim_slots_create_shared(&layout) == NULL);
+	CHECK_INT(errno, ENOMEM);
+	layout.slot_bytes = (UINT64_C(1) << 63) + 4096;
+	errno = 0;
+	CHECK(shim_slots_create_plain(&layout) == NULL);
+	CHECK_INT(errno, ENOMEM);
+}
+
 int main(void)
 {
 	RUN(test_every_order);
@@ -290,5 +306,6 @@ int main(void)
 	RUN(test_lying_daemon);
 	RUN(test_limits);
 	RUN(test_memory_is_sealed);
+	RUN(test_too_large);
 	return test_result();
 }
