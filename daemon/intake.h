@@ -5,9 +5,14 @@
  * One stream of a client: its two memfds mapped, its frames taken in, feedback
  * written. Believes nothing that the client wrote (proto/shm.h).
  *
- * A fault on the mappings is impossible: a stream is accepted only if both
- * memfds are sealed against shrinking (so no page inside can go away) and are
- * ordinary shared memory (a huge page that cannot be had would be a fault).
+ * The client cannot take the mappings away: a stream is accepted only if both
+ * memfds are sealed against shrinking (so no page inside lies beyond the end)
+ * and are ordinary shared memory (a huge page that cannot be had would be a
+ * fault). What is left: a page that was never written, or that the client has
+ * punched out, is made when it is touched, and where the kernel may not
+ * overcommit (vm.overcommit_memory=2) it may have none to give. That is SIGBUS,
+ * and so is a page whose hardware has failed. Nothing catches it: the daemon ends
+ * (docs/faults.md).
  *
  * Threads: created on main, then stream_take(), stream_feedback() and
  * stream_hint() belong to one render thread at a time; whoever drops the last
