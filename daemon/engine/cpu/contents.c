@@ -105,7 +105,9 @@ void contents_open(struct contents *contents, uint64_t held, struct sheet *sheet
 			after = image;
 	}
 	after->number = 0;
-	memset(after->tiles, 0, (size_t)contents->columns * contents->rows * sizeof(*after->tiles));
+	/* Before the first frame there are none. */
+	if (after->tiles)
+		memset(after->tiles, 0, (size_t)contents->columns * contents->rows * sizeof(*after->tiles));
 	sheet->before = before ? before->tiles : NULL;
 	sheet->after = after->tiles;
 }
