@@ -47,7 +47,8 @@ static void report(struct scanout *scanout, const struct presenter_flip *flip, s
 	out->serial = scanout->shown.any ? scanout->shown.serial : 0;
 	out->group = scanout->shown.any ? scanout->shown.group : 0;
 	out->shown = scanout->fresh ? scanout->fresh_as : PRESENTER_KEPT;
-	out->late = scanout->fresh && scanout->fresh_late;
+	/* Or it came on display in time while nothing was reported. */
+	out->late = scanout->fresh && (scanout->fresh_late || scanout->next_vblank > scanout->fresh_wanted);
 	scanout->fresh = false;
 	scanout->next_vblank = flip->vblank + 1;
 }
@@ -74,7 +75,8 @@ uint32_t scanout_flipped(struct scanout *scanout, uint64_t vblank, struct presen
 	scanout->under_way.any = false;
 	scanout->fresh = true;
 	scanout->fresh_as = scanout->under_way_as;
-	scanout->fresh_late = vblank > scanout->under_way_wanted;
+	scanout->fresh_wanted = scanout->under_way_wanted;
+	scanout->fresh_late = vblank > scanout->fresh_wanted;
 	return count + report_waiting(scanout, reports + count);
 }
 

@@ -37,13 +37,14 @@ struct scanout {
 	uint64_t under_way_wanted; /* the vblank that its picture was chosen for: before it if a flip was refused or busy */
 	enum presenter_shown under_way_as;
 	bool fresh, fresh_late; /* `shown` was not reported yet */
+	uint64_t fresh_wanted;  /* as under_way_wanted */
 	enum presenter_shown fresh_as;
 	struct presenter_flip waiting; /* a vblank whose flip has not been heard of */
 	bool is_waiting;
 	uint64_t next_vblank; /* the first that was not reported */
 };
 
-/* Reports begin at this vblank; one that is still waited for is given up. */
+/* Reports begin at this vblank; one that is still waited for is given up, and a picture not reported yet is late. */
 void scanout_start(struct scanout *scanout, uint64_t vblank);
 
 /*

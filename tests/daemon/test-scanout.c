@@ -119,6 +119,27 @@ static void test_refused_flip(void)
 	expect(&reports[0], 1, PRESENTER_PICTURE, 1, true);
 }
 
+/* What came on display while nothing was reported is reported with the first vblank afterwards: late. */
+static void test_flip_in_a_pause(void)
+{
+	struct scanout scanout = {0};
+	struct presenter_flip reports[2];
+	queue(&scanout, 1, 1, 1);
+	scanout_choose(&scanout, 1);
+	scanout_flipped(&scanout, 1, reports);
+	scanout_start(&scanout, 9);
+	CHECK_INT(vblank_comes(&scanout, 9, reports), 1);
+	expect(&reports[0], 9, PRESENTER_PICTURE, 1, true);
+	CHECK_INT(reports[0].skipped, 0);
+	queue(&scanout, 10, 1, 2);
+	scanout_choose(&scanout, 10);
+	scanout_start(&scanout, 11); /* before its flip ends */
+	scanout_flipped(&scanout, 10, reports);
+	CHECK_INT(vblank_comes(&scanout, 10, reports), 0);
+	CHECK_INT(vblank_comes(&scanout, 11, reports), 1);
+	expect(&reports[0], 11, PRESENTER_PICTURE, 2, true);
+}
+
 static void test_skipped_vblanks(void)
 {
 	struct scanout scanout = {0};
@@ -197,6 +218,7 @@ int main(void)
 	RUN(test_missed_flip);
 	RUN(test_silent_flip);
 	RUN(test_refused_flip);
+	RUN(test_flip_in_a_pause);
 	RUN(test_skipped_vblanks);
 	RUN(test_standby);
 	RUN(test_random);
