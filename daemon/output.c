@@ -62,7 +62,7 @@ static void on_change(void *data, struct presenter *presenter, bool lost)
 	struct output *output = data;
 	struct output_presenter *wished = &output->wished_presenter;
 	pthread_mutex_lock(&output->lock);
-	*wished = (struct output_presenter){.presenter = presenter, .lost = lost};
+	*wished = (struct output_presenter){.presenter = presenter, .lost = lost, .answer = wished->presenter != NULL};
 	snprintf(wished->name, sizeof(wished->name), "%s", presenter ? presenter->impl->name : "none");
 	snprintf(wished->display, sizeof(wished->display), "%s",
 			 presenter && presenter->impl->get_display ? presenter->impl->get_display(presenter) : "");

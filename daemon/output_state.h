@@ -39,6 +39,7 @@ struct output {
 	struct output_presenter {
 		struct presenter *presenter; /* NULL: none */
 		bool lost;                   /* the one before it */
+		bool answer;                 /* there was one before it, which the display waits for, seen here or not */
 		char name[32], display[192]; /* as output_info says */
 	} wished_presenter;
 	uint32_t view;

@@ -135,7 +135,6 @@ static void tell_presenter(struct output *output, const struct output_presenter 
 /* When it is time. */
 static void change_presenter(struct output *output)
 {
-	const bool had_one = output->render.presenter != NULL;
 	if (!render_go_over(&output->render))
 		return;
 	atomic_store(&output->presenter, output->render.presenter);
@@ -143,7 +142,7 @@ static void change_presenter(struct output *output)
 	while (atomic_load(&output->flipping) > 0)
 		sched_yield();
 	tell_presenter(output, &output->coming);
-	if (had_one)
+	if (output->coming.answer)
 		display_let_go(output->display);
 }
 

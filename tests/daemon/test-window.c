@@ -232,6 +232,25 @@ static void test_server_that_hangs(void)
 	stop(SIGTERM);
 }
 
+/* The window was made anew and goes again at once, maybe before the render thread has seen it. */
+static void test_changes_that_are_taken_back(void)
+{
+	const char *const arguments[] = {"--present", "glfw", NULL};
+	struct raw_reply reply;
+	char request[128];
+	fixture_start(&fixture, arguments);
+	const int fd = raw_greet(fixture.socket);
+	CHECK_INT(raw_control(fd, "set seccomp=yes", -1, &reply), 0);
+	for (int i = 0; i < 12; i++) {
+		snprintf(request, sizeof(request), "set window-size=320x%d seccomp=no", 200 + i);
+		CHECK(raw_control(fd, request, -1, &reply) != 0);
+		snprintf(request, sizeof(request), "set window-size=400x%d", 200 + i);
+		CHECK_INT(raw_control(fd, request, -1, &reply), 0);
+	}
+	close(fd);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
 /* The display server dies: the next presenter of the list takes over, the client stays. */
 static void test_lost_server(void)
 {
@@ -303,6 +322,7 @@ int main(int argc, char **argv)
 	RUN(test_help_without_a_game);
 	RUN(test_hidden_window);
 	RUN(test_server_that_hangs);
+	RUN(test_changes_that_are_taken_back);
 	RUN(test_lost_server);
 	RUN(test_server_that_comes_back); /* goes on where that ended */
 	RUN(test_server_that_is_waited_for);
