@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "daemon/open_at_once.h"
 #include "daemon/version.h"
 
 /* One that a client has ended and waits for. */
@@ -66,13 +67,19 @@ char *capture_settings_text(const struct settings *settings, const char *equals)
 	return text;
 }
 
-/* Path or fd (taken over). NULL with a sentence. */
-static struct recorder *open_recorder(const char *path, int fd, struct error *error)
+/* The fd is taken over; the path (NULL: none) is its name. NULL with a sentence. */
+static struct recorder *make_recorder(const char *path, int fd, struct error *error)
 {
 	const struct recorder_params params = {
-		.writer = {.path = path, .fd = fd > 0 ? fd : 0, .info = "program=pursuitd " PURSUITD_VERSION "\n"},
+		.writer = {.path = path, .fd = fd, .info = "program=pursuitd " PURSUITD_VERSION "\n"},
 	};
 	return recorder_create(&params, error);
+}
+
+static struct recorder *open_recorder(const char *path, struct error *error)
+{
+	const int fd = open_at_once("record", path, 0, error);
+	return fd < 0 ? NULL : make_recorder(path, fd, error);
 }
 
 /* Frames go there from now on. Gives the one before back. */
@@ -113,7 +120,7 @@ int capture_begin(struct capture *capture, int fd, struct error *error)
 			close(fd);
 		return error_set(error, why ? -EINVAL : -EBUSY, "%s", why ? why : "record: a recording is running already");
 	}
-	struct recorder *recorder = open_recorder(NULL, fd, error);
+	struct recorder *recorder = make_recorder(NULL, fd, error);
 	if (!recorder)
 		return -EIO;
 	use(capture, recorder, capture->params.settings);
@@ -240,7 +247,7 @@ int capture_prepare(void *data, const struct settings *now, const struct setting
 		return error_set(
 			error, -EBUSY,
 			"record: a client records into a file of its own; `pursuit record` ends it, then set it again");
-	capture->prepared.recorder = open_recorder(fresh->record, -1, error);
+	capture->prepared.recorder = open_recorder(fresh->record, error);
 	return capture->prepared.recorder ? 0 : -EIO;
 }
 
@@ -277,7 +284,7 @@ static int start(struct capture *capture, struct error *error)
 		return error_set(error, -errno, "record: %s", strerror(errno));
 	if (!*path)
 		return 0;
-	struct recorder *recorder = open_recorder(path, -1, error);
+	struct recorder *recorder = open_recorder(path, error);
 	if (!recorder)
 		return -EIO;
 	log_info(capture->params.log, "recording %s", path);

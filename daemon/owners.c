@@ -12,6 +12,7 @@
 #include "daemon/aside.h"
 #include "daemon/lab/chip.h"
 #include "daemon/lab/latency_log.h"
+#include "daemon/open_at_once.h"
 #include "daemon/seccomp.h"
 #include "daemon/version.h"
 
@@ -77,9 +78,9 @@ static int prepare_stats(void *data, const struct settings *now, const struct se
 	if (!*fresh->stats || strcmp(now->stats, fresh->stats) == 0)
 		return 0;
 	const bool was_there = access(fresh->stats, F_OK) == 0;
-	const int fd = open(fresh->stats, O_WRONLY | O_CREAT | O_NONBLOCK | O_CLOEXEC, 0666);
+	const int fd = open_at_once("stats", fresh->stats, 0, error);
 	if (fd < 0)
-		return error_set(error, -errno, "stats: %s: %s", fresh->stats, strerror(errno));
+		return fd;
 	close(fd);
 	if (!was_there)
 		unlink(fresh->stats);

@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "daemon/open_at_once.h"
 #include "daemon/record/image.h"
 #include "daemon/record/pattern.h"
 #include "daemon/record/y4m.h"
@@ -213,8 +214,14 @@ static int open_times(struct tee *tee, struct error *error)
 		snprintf(times, sizeof(times), "%.*stimes.csv", slash ? (int)(slash + 1 - tee->path) : 0, tee->path);
 	else
 		snprintf(times, sizeof(times), "%s.csv", tee->path);
-	tee->times = fopen(times, "we");
-	return tee->times ? 0 : error_set(error, -errno, "tee: %s: %s", times, strerror(errno));
+	const int fd = open_at_once("tee", times, O_TRUNC, error);
+	if (fd < 0)
+		return fd;
+	tee->times = fdopen(fd, "w");
+	if (tee->times)
+		return 0;
+	close(fd);
+	return error_set(error, -ENOMEM, "tee: out of memory");
 }
 
 struct tee *tee_create(const struct tee_params *params, struct error *error)

@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "daemon/lab/latency_format.h"
+#include "daemon/open_at_once.h"
 
 #define WAITING 4096u /* rows: half a minute at 120 Hz */
 #define ROUND_MS 250
@@ -169,9 +170,10 @@ struct latency_log *latency_log_create(const char *path, const char *header, con
 	snprintf(self->path, sizeof(self->path), "%s", path);
 	self->binary = strcmp(strrchr(path, '.'), ".bin") == 0;
 	self->stop_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-	self->fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-	if (self->fd < 0 || self->stop_fd < 0) {
-		error_set(error, -errno, "latency-log: %.256s: %s", path, strerror(errno));
+	if (self->stop_fd < 0)
+		error_set(error, -errno, "latency-log: %s", strerror(errno));
+	self->fd = self->stop_fd < 0 ? -1 : open_at_once("latency-log", path, O_TRUNC, error);
+	if (self->fd < 0) {
 		free_log(self);
 		return NULL;
 	}

@@ -373,6 +373,24 @@ static void test_refusals(void)
 	check_account();
 }
 
+/* Pipes that nobody reads: whoever opened one would wait. */
+static void test_pipes(void)
+{
+	static const char *const pipes[][2] = {
+		{"record", "pipe"}, {"latency-log", "pipe.csv"}, {"stats", "pipe"}, {"tee", "pipe"}, {"tee", "%d.png"}};
+	static const char *const names[] = {"pipe", "pipe.csv", "times.csv"};
+	char change[256];
+	for (size_t i = 0; i < 3; i++)
+		CHECK_INT(mkfifo(path_of(names[i]), 0600), 0);
+	for (size_t i = 0; i < sizeof(pipes) / sizeof(pipes[0]); i++) {
+		snprintf(change, sizeof(change), "%s=%s", pipes[i][0], path_of(pipes[i][1]));
+		check_refused(change, "nobody reads the pipe");
+	}
+	for (size_t i = 0; i < 3; i++)
+		unlink(path_of(names[i]));
+	check_account();
+}
+
 /* There is no window system, and nothing of the one in use is touched. */
 static void test_no_such_presenter(void)
 {
@@ -457,6 +475,7 @@ int main(int argc, char **argv)
 	RUN(test_socket);
 	RUN(test_socket_lets_in);
 	RUN(test_refusals);
+	RUN(test_pipes);
 	RUN(test_no_such_presenter);
 	leave();
 	test_kept_picture("refresh=60", "kept-presenter.y4m");
