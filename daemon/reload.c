@@ -218,6 +218,8 @@ int reload_now(struct reload *reload, const char *why, struct error *error)
 	} else {
 		result = (int)live_reload(reload->live, &fresh, &reload->mistake);
 		log_info(reload->log, "%s: settings read again, %d changed", why, result);
+		*error = reload->mistake;
+		result = *error->text ? -EINVAL : result;
 	}
 	arguments_finish(&fresh);
 	return result;

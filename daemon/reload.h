@@ -50,7 +50,10 @@ void reload_init(struct reload *reload, struct live *live, struct log *log, cons
 void reload_watch(struct reload *reload, struct loop *loop);
 void reload_finish(struct reload *reload);
 
-/* Now. `why` is what the log begins with. Gives how many settings changed, or -EINVAL with a sentence. */
+/*
+ * Now. `why` is what the log begins with. Gives how many settings changed, or -EINVAL with a sentence: none did, or
+ * those that need something new did not (live_reload()).
+ */
 int reload_now(struct reload *reload, const char *why, struct error *error);
 
 #endif

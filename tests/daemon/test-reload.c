@@ -161,6 +161,18 @@ static void test_endless_burst(void)
 	CHECK(now >= end_ns);
 }
 
+/* What cannot be made is told to who asked for the reading; what needs nothing new is taken. */
+static void test_asked_for(void)
+{
+	write_file(config, "cell = 27\nsocket = /no-such-folder/x/socket\n");
+	CHECK(raw_control(fd, "reload", -1, &reply) != 0);
+	CHECK(strstr((const char *)reply.raw + sizeof(reply.control), "/no-such-folder") != NULL);
+	CHECK(setting_comes("\ncell = 27\n"));
+	write_file(config, "cell = 28\n");
+	CHECK_INT(raw_control(fd, "reload", -1, &reply), 0);
+	CHECK(setting_comes("\ncell = 28\n"));
+}
+
 /* A link that is switched to another file, and that file changed. */
 static void test_link(void)
 {
@@ -318,6 +330,7 @@ int main(int argc, char **argv)
 	RUN(test_deleted);
 	RUN(test_burst);
 	RUN(test_endless_burst);
+	RUN(test_asked_for);
 	RUN(test_link);
 	RUN(test_many_links);
 	RUN(test_asked_stays);
