@@ -9,6 +9,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "daemon/notify.h"
 #include "daemon/slices.h"
 
 #define PATIENCE_S 10
@@ -86,18 +87,27 @@ static struct making *start(const struct settings *settings, const struct log *l
 	return NULL;
 }
 
+/* With the lock. Main waits here, and not for ever: what watches it is told each second. */
+static bool wait_for_engine(struct making *making)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	for (int second = 0; second < PATIENCE_S && !making->made; second++) {
+		notify_send(making->log, "WATCHDOG=1");
+		until.tv_sec++;
+		while (!making->made && pthread_cond_timedwait(&making->wake, &making->lock, &until) == 0)
+			;
+	}
+	return making->made;
+}
+
 struct engine *engine_maker_make(const struct settings *settings, const struct log *log, struct error *error)
 {
 	struct making *making = start(settings, log, error);
-	struct timespec until;
 	if (!making)
 		return NULL;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_sec += PATIENCE_S;
 	pthread_mutex_lock(&making->lock);
-	while (!making->made && pthread_cond_timedwait(&making->wake, &making->lock, &until) == 0)
-		;
-	const bool made = making->made;
+	const bool made = wait_for_engine(making);
 	making->given_up = !made;
 	pthread_mutex_unlock(&making->lock);
 	if (!made) {

@@ -10,8 +10,8 @@
 #include "daemon/options.h"
 
 /*
- * Waits until it is there, at most ten seconds: a driver that hangs is left to itself. The engine is anybody's, on
- * whatever thread that one uses it. NULL with a sentence.
+ * Waits until it is there, at most ten seconds: a driver that hangs is left to itself; the service manager's watchdog
+ * is fed meanwhile. The engine is anybody's, on whatever thread that one uses it. NULL with a sentence. On main.
  */
 struct engine *engine_maker_make(const struct settings *settings, const struct log *log, struct error *error);
 
