@@ -93,9 +93,12 @@ static int fill(struct plan_dense *dense, const struct frame *frame, const struc
 	struct plan_intervals intervals = plan_intervals_of(&frame->header, params->real_interval_ns);
 	dense->real_interval_s = (double)intervals.real * 1e-9;
 	dense->rest = plan_rest_of(frame, &intervals);
+	/* What its motion plane says is of a frame before. */
+	if (params->unchanged && dense->rest == PLAN_MOVES)
+		dense->rest = PLAN_STILL;
 	dense->backward = frame->header.motion_kind == PURSUIT_MOTION_BACKWARD;
 	dense->invalid_pixels = 0;
-	if (reserve(dense) < 0 || read_depth(dense, kernels, frame) < 0)
+	if (reserve(dense) < 0 || (!params->unchanged && read_depth(dense, kernels, frame) < 0))
 		return -ENOMEM;
 	if (dense->rest != PLAN_MOVES) {
 		memset(dense->ux, 0, 2 * (size_t)dense->width * dense->height * sizeof(float));

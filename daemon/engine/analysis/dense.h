@@ -30,7 +30,8 @@ struct plan_dense {
 
 /*
  * Fills it from a frame: cell, threshold and phase of the params do not matter. Reads the planes as plan_make() does,
- * the same bits come out. 0 or -ENOMEM with a sentence. Any thread, one at a time.
+ * the same bits come out; but of a frame that is unchanged none is read: it stood still, and its z are undefined. 0 or
+ * -ENOMEM with a sentence. Any thread, one at a time.
  */
 int plan_dense_make(struct plan_dense *dense, const struct frame *frame, const struct plan_params *params,
 					struct error *error);
