@@ -24,27 +24,48 @@ static bool is_new(const char *path, const char *before)
 }
 
 int owners_keep_files(const struct settings *now, const struct settings *fresh, const struct log *log,
-					  struct error *error)
+					  struct aside *asides, struct error *error)
 {
 	const bool is_video = is_new(fresh->tee, now ? now->tee : NULL) && !strchr(fresh->tee, '%');
 	char times[sizeof(fresh->tee) + 8];
 	int result = 0;
 	snprintf(times, sizeof(times), "%s.csv", fresh->tee);
-	if (is_new(fresh->lab.latency_log, now ? now->lab.latency_log : NULL))
-		result = aside_put("latency-log", fresh->lab.latency_log, log, error);
-	if (result == 0 && is_new(fresh->record, now ? now->record : NULL))
-		result = aside_put("record", fresh->record, log, error);
-	if (result == 0 && is_video)
-		result = aside_put("tee", fresh->tee, log, error);
-	if (result == 0 && is_video)
-		result = aside_put("tee", times, log, error);
+	const struct {
+		const char *option, *path;
+		bool is_new;
+	} files[OWNERS_FILES] = {
+		{"latency-log", fresh->lab.latency_log, is_new(fresh->lab.latency_log, now ? now->lab.latency_log : NULL)},
+		{"record", fresh->record, is_new(fresh->record, now ? now->record : NULL)},
+		{"tee", fresh->tee, is_video},
+		{"tee", times, is_video},
+	};
+	for (unsigned i = 0; i < OWNERS_FILES && result == 0; i++)
+		if (files[i].is_new)
+			result = aside_put(files[i].option, files[i].path, log, asides ? &asides[i] : NULL, error);
 	return result;
+}
+
+static void commit_files(void *data, const struct settings *fresh)
+{
+	struct owners *owners = data;
+	(void)fresh;
+	memset(owners->asides, 0, sizeof(owners->asides));
+}
+
+static void abandon_files(void *data)
+{
+	struct owners *owners = data;
+	for (unsigned i = 0; i < OWNERS_FILES; i++)
+		aside_take_back(&owners->asides[i], owners->log);
 }
 
 static int prepare_files(void *data, const struct settings *now, const struct settings *fresh, struct error *error)
 {
-	const struct owners *owners = data;
-	return owners_keep_files(now, fresh, owners->log, error);
+	struct owners *owners = data;
+	const int result = owners_keep_files(now, fresh, owners->log, owners->asides, error);
+	if (result < 0)
+		abandon_files(owners);
+	return result;
 }
 
 /* ---- the socket ---- */
@@ -207,7 +228,7 @@ void owners_add(struct live *live, struct owners *owners)
 {
 	const struct live_owner all[] = {
 		{prepare_stats, commit_nothing, abandon_nothing, owners},
-		{prepare_files, commit_nothing, abandon_nothing, owners},
+		{prepare_files, commit_files, abandon_files, owners},
 		{prepare_socket, commit_socket, abandon_socket, owners},
 		{capture_prepare, capture_commit, capture_abandon, owners->capture},
 		{prepare_lab, commit_lab, abandon_lab, owners},

@@ -5,12 +5,15 @@
 #ifndef PURSUIT_OWNERS_H
 #define PURSUIT_OWNERS_H
 
+#include "daemon/aside.h"
 #include "daemon/capture.h"
 #include "daemon/closer.h"
 #include "daemon/lab/lab.h"
 #include "daemon/live.h"
 #include "daemon/output.h"
 #include "daemon/server.h"
+
+#define OWNERS_FILES 4u
 
 struct owners {
 	struct server *server;
@@ -19,15 +22,17 @@ struct owners {
 	struct output *output;
 	const struct log *log;
 	struct closer *closer;
-	bool lab_changes; /* between the two steps */
+	/* between the two steps */
+	bool lab_changes;
+	struct aside asides[OWNERS_FILES];
 };
 
 /*
  * Puts aside what lies where the fresh settings have files written that those of now (NULL: none) have not. 0, or a
- * negative errno with a sentence.
+ * negative errno with a sentence. `asides`: OWNERS_FILES, zeroed, or NULL.
  */
 int owners_keep_files(const struct settings *now, const struct settings *fresh, const struct log *log,
-					  struct error *error);
+					  struct aside *asides, struct error *error);
 
 /* NULL with a sentence. Before any other thread. */
 struct lab *owners_create_lab(const struct settings *settings, struct clock *clock, const struct log *log,

@@ -175,7 +175,7 @@ static int start(struct pursuitd *daemon, struct error *error)
 	daemon->loop = loop_create(error);
 	if (!daemon->loop || loop_add_signals(daemon->loop, signals, 3, on_signal, daemon, error) < 0)
 		return -1;
-	if (owners_keep_files(NULL, &daemon->settings, &daemon->log, error) < 0)
+	if (owners_keep_files(NULL, &daemon->settings, &daemon->log, NULL, error) < 0)
 		return -1;
 	/* Before any thread: it may fork. */
 	daemon->lab = owners_create_lab(&daemon->settings, &daemon->clock, &daemon->log, error);

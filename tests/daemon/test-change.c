@@ -373,6 +373,40 @@ static void test_refusals(void)
 	check_account();
 }
 
+static bool is_there(const char *name)
+{
+	return access(path_of(name), F_OK) == 0;
+}
+
+/* What was there before is as it was, and nothing new is there, whichever of them it was that could not be made. */
+static void test_files_of_refusals(void)
+{
+	static const char *const names[] = {"old.rec", "old.csv", "old.y4m", "old.y4m.csv"};
+	static const char *const made[] = {"new.rec", "new.csv", "new.y4m.csv", "old.rec.1", "old.csv.1", "old.y4m.1"};
+	static const char *const wrong[] = {"context=egl-device:200", "tee=/no-such-folder/x.y4m"};
+	char change[512];
+	for (size_t i = 0; i < 4; i++) {
+		FILE *file = fopen(path_of(names[i]), "we");
+		CHECK(file && fputs(names[i], file) >= 0 && fclose(file) == 0);
+	}
+	for (int i = 0; i < 4; i++) {
+		const char *age = i / 2 ? "old" : "new";
+		snprintf(change, sizeof(change), "record=%s/%s.rec latency-log=%s/%s.csv tee=%s/%s.y4m %s", fixture.folder, age,
+				 fixture.folder, age, fixture.folder, age, wrong[i % 2]);
+		check_refused(change, i % 2 ? "no-such-folder" : "200");
+	}
+	for (size_t i = 0; i < sizeof(made) / sizeof(made[0]); i++)
+		CHECK(!is_there(made[i]));
+	for (size_t i = 0; i < 4; i++) {
+		char found[64] = "";
+		FILE *file = fopen(path_of(names[i]), "re");
+		CHECK(file && fgets(found, sizeof(found), file) && fclose(file) == 0);
+		CHECK_STRING(found, names[i]);
+		unlink(path_of(names[i]));
+	}
+	check_account();
+}
+
 /* Pipes that nobody reads: whoever opened one would wait. */
 static void test_pipes(void)
 {
@@ -475,6 +509,7 @@ int main(int argc, char **argv)
 	RUN(test_socket);
 	RUN(test_socket_lets_in);
 	RUN(test_refusals);
+	RUN(test_files_of_refusals);
 	RUN(test_pipes);
 	RUN(test_no_such_presenter);
 	leave();
