@@ -91,7 +91,8 @@ struct kms {
 	struct presenter_flip reports[KMS_REPORTS];
 	uint32_t report_count;
 	bool told_loss;
-	bool asks; /* for the vblank after the one that was heard */
+	uint64_t undrawn_vblank; /* the newest at which the GPU drew still what a flip that takes long waits for */
+	bool asks;               /* for the vblank after the one that was heard */
 };
 
 static inline struct kms *kms_of(struct presenter *presenter)

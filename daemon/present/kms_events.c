@@ -218,14 +218,20 @@ static bool is_to_choose(const struct kms *kms, uint64_t vblank)
 	return kms->chosen < vblank && vblank >= kms->scanout.next_vblank;
 }
 
-/* One that waits for the GPU is the GPU's affair: its driver ends it, if need be with a reset. */
-static bool flip_hangs(const struct kms *kms)
+/*
+ * One that waits for the GPU is the GPU's affair: its driver ends it, if need be with a reset. From then on it has as
+ * long as any other.
+ */
+static bool flip_hangs(struct kms *kms)
 {
 	const struct scanout *scanout = &kms->scanout;
-	if (!scanout->under_way.any || kms->number <= scanout->under_way_vblank + FLIP_VBLANKS)
+	const uint64_t due = scanout->under_way_vblank;
+	if (!scanout->under_way.any || kms->number <= due + FLIP_VBLANKS / 2)
 		return false;
 	struct pollfd fence = {kms->pictures[scanout->under_way.image].fence, POLLIN, 0};
-	return fence.fd < 0 || poll(&fence, 1, 0) == 1;
+	if (fence.fd >= 0 && poll(&fence, 1, 0) == 0)
+		kms->undrawn_vblank = kms->number;
+	return kms->number > (due > kms->undrawn_vblank ? due : kms->undrawn_vblank) + FLIP_VBLANKS;
 }
 
 static void act_on_time(struct kms *kms)

@@ -4,6 +4,7 @@
 #include "tests/daemon/fake-kms.h"
 
 #include <errno.h>
+#include <poll.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/timerfd.h>
@@ -22,6 +23,7 @@ struct kms_device {
 	uint64_t epoch_ns, period_ns;
 	uint64_t wanted;  /* vblank to be told of; 0: none */
 	uint64_t flip_at; /* vblank of the flip under way; 0: none */
+	int fence;        /* that it waits for; -1: none */
 	struct kms_buffer next, now;
 };
 
@@ -80,12 +82,24 @@ static void scan_out(const struct kms_buffer *buffer)
 		atomic_fetch_add(&fake_kms.torn, 1);
 }
 
+/* A flip that cannot be at this vblank is at the next one, perhaps. */
+static void put_off_flip(struct kms_device *device, uint64_t sequence)
+{
+	struct pollfd fence = {device->fence, POLLIN, 0};
+	if (device->flip_at == 0 || sequence < device->flip_at)
+		return;
+	if (atomic_load(&fake_kms.stuck) || (fence.fd >= 0 && poll(&fence, 1, 0) != 1))
+		device->flip_at = sequence + 1;
+}
+
 int kms_device_read_events(struct kms_device *device, const struct kms_events *events)
 {
 	uint64_t count;
 	if (read(device->timer, &count, sizeof(count)) < 0)
 		return -errno;
-	const uint64_t sequence = sequence_now(device), wanted = device->wanted, flip_at = device->flip_at;
+	const uint64_t sequence = sequence_now(device), wanted = device->wanted;
+	put_off_flip(device, sequence);
+	const uint64_t flip_at = device->flip_at;
 	scan_out(&device->now);
 	if (flip_at != 0 && sequence >= flip_at) {
 		device->flip_at = 0;
@@ -132,6 +146,7 @@ int kms_device_flip(struct kms_device *device, const struct kms_buffer *buffer, 
 	if (device->flip_at != 0 || is_busy())
 		return -EBUSY;
 	device->next = *buffer;
+	device->fence = fence;
 	device->flip_at = sequence_now(device) + 1;
 	arm(device);
 	return 0;

@@ -11,7 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "daemon/present/presenter.h"
+#include "daemon/present/kms.h"
 #include "tests/daemon/fake-kms.h"
 #include "tests/test.h"
 
@@ -171,6 +171,71 @@ static void test_old_event(void)
 	atomic_store(&fake_kms.old_event, false);
 }
 
+/* ---- while a GPU draws ---- */
+
+/* More than a flip may take that waits for nothing. */
+#define LONG_VBLANKS 300u
+
+/* Queues a picture that is drawn when `drawn` can be read, which is the presenter's from now on; -1: it is drawn. */
+static void show_unfinished(struct presenter *presenter, int drawn)
+{
+	const struct presenter_impl *impl = presenter->impl;
+	const struct grid grid = impl->get_grid(presenter);
+	const uint64_t vblank = grid_at_or_after(&grid, clock_now(&real_clock) + 20 * PERIOD_NS);
+	struct kms *kms = (struct kms *)presenter;
+	struct presenter_image image;
+	CHECK_INT(impl->acquire(presenter, FAKE_WIDTH, FAKE_HEIGHT, &image), 0);
+	fill(&image, 99);
+	CHECK_INT(impl->present(presenter, &image, vblank, 1, 1), 0);
+	pthread_mutex_lock(&kms->lock);
+	kms->pictures[image.index].fence = drawn;
+	pthread_mutex_unlock(&kms->lock);
+}
+
+static bool wait_for(const atomic_uint_fast64_t *count, uint64_t least)
+{
+	const uint64_t end_ns = clock_now(&real_clock) + PATIENCE_S * 1000 * MS;
+	while (atomic_load(count) < least && clock_now(&real_clock) < end_ns)
+		clock_wait_until(&real_clock, clock_now(&real_clock) + MS / 4);
+	return atomic_load(count) >= least;
+}
+
+/* Just after a vblank, so that the presenter looks at it before the flip can end. */
+static void test_slow_gpu(void)
+{
+	struct presenter *presenter = open_presenter();
+	int drawn[2];
+	if (!presenter)
+		return;
+	CHECK_INT(pipe2(drawn, O_CLOEXEC), 0);
+	show_unfinished(presenter, drawn[0]);
+	CHECK(wait_for(&heard.flips, LONG_VBLANKS));
+	CHECK(!atomic_load(&heard.lost));
+	CHECK(wait_for(&heard.flips, atomic_load(&heard.flips) + 1));
+	CHECK_INT(write(drawn[1], "", 1), 1);
+	CHECK(wait_for(&heard.serial, 1));
+	CHECK(wait_for(&heard.flips, atomic_load(&heard.flips) + 8));
+	CHECK(!atomic_load(&heard.lost));
+	close_presenter(presenter);
+	close(drawn[1]);
+}
+
+/* It waits for nothing, and does not end. */
+static void test_stuck_flip(void)
+{
+	struct presenter *presenter = open_presenter();
+	if (!presenter)
+		return;
+	atomic_store(&fake_kms.stuck, true);
+	show_unfinished(presenter, -1);
+	const uint64_t end_ns = clock_now(&real_clock) + PATIENCE_S * 1000 * MS;
+	while (!atomic_load(&heard.lost) && clock_now(&real_clock) < end_ns)
+		clock_wait_until(&real_clock, clock_now(&real_clock) + MS);
+	CHECK(atomic_load(&heard.lost));
+	atomic_store(&fake_kms.stuck, false);
+	close_presenter(presenter);
+}
+
 /* ---- while consoles are switched ---- */
 
 static bool wait_until_left(void)
@@ -260,6 +325,8 @@ int main(void)
 	RUN(test_pictures);
 	RUN(test_busy);
 	RUN(test_old_event);
+	RUN(test_slow_gpu);
+	RUN(test_stuck_flip);
 	RUN(test_other_console);
 	RUN(test_one_after_another);
 	RUN(test_unplugged);
