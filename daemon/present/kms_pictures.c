@@ -167,8 +167,11 @@ static int make_in_gl(struct kms *kms, struct kms_picture *picture, uint32_t wid
 {
 	if (!picture->in_gl.buffer.framebuffer && make_gl_buffer(kms, picture, error) < 0)
 		return -ENOTSUP;
-	const bool large = is_large(kms, width, height);
-	return kms_gl_resize(kms->gl, &picture->gl_large, large ? width : 0, large ? height : 0, error) < 0 ? -ENOTSUP : 0;
+	struct kms_gl_large *large = &picture->gl_large;
+	const bool wanted = is_large(kms, width, height);
+	if (!wanted || large->width != width || large->height != height)
+		picture->in_gl.large = (struct contents){0, 0, 0};
+	return kms_gl_resize(kms->gl, large, wanted ? width : 0, wanted ? height : 0, error) < 0 ? -ENOTSUP : 0;
 }
 
 static struct kms_picture *acquire_any(struct kms *kms, struct presenter_image *image)

@@ -13,6 +13,7 @@
 
 #include "daemon/present/kms_console.h"
 #include "daemon/present/kms_device.h"
+#include "daemon/present/kms_gl.h"
 
 #define SECOND UINT64_C(1000000000)
 
@@ -201,7 +202,71 @@ void kms_device_destroy_buffer(struct kms_device *device, struct kms_buffer *buf
 int kms_device_adopt_buffer(struct kms_device *device, uint32_t handle, uint32_t stride, struct kms_buffer *buffer,
 							struct error *error)
 {
-	return -ENOTSUP;
+	*buffer = (struct kms_buffer){.stride = stride, .framebuffer = 1, .handle = handle};
+	return 0;
+}
+
+/* ---- buffers of GL: nothing is ever drawn there ---- */
+
+struct kms_gl {
+	struct presenter_context context;
+};
+
+struct kms_gl *kms_gl_create(int fd, struct error *error)
+{
+	return calloc(1, sizeof(struct kms_gl));
+}
+
+void kms_gl_destroy(struct kms_gl **gl)
+{
+	free(*gl);
+	*gl = NULL;
+}
+
+const struct presenter_context *kms_gl_get_context(const struct kms_gl *gl)
+{
+	return &gl->context;
+}
+
+int kms_gl_create_buffer(struct kms_gl *gl, uint32_t width, uint32_t height, struct kms_gl_buffer *buffer,
+						 struct error *error)
+{
+	*buffer = (struct kms_gl_buffer){.texture = 1, .stride = 4 * width};
+	return 0;
+}
+
+void kms_gl_blacken(struct kms_gl *gl, const struct kms_gl_buffer *buffer)
+{
+}
+
+int kms_gl_resize(struct kms_gl *gl, struct kms_gl_large *large, uint32_t width, uint32_t height, struct error *error)
+{
+	*large = (struct kms_gl_large){width != 0, width, height};
+	return 0;
+}
+
+void kms_gl_shrink(struct kms_gl *gl, const struct kms_gl_large *large, const struct kms_gl_buffer *buffer,
+				   const struct rectangle *part)
+{
+}
+
+bool kms_gl_can_fence(const struct kms_gl *gl)
+{
+	return false;
+}
+
+int kms_gl_fence(struct kms_gl *gl)
+{
+	return -1;
+}
+
+void kms_gl_wait(struct kms_gl *gl)
+{
+}
+
+void kms_gl_destroy_buffer(struct kms_gl *gl, struct kms_gl_buffer *buffer)
+{
+	*buffer = (struct kms_gl_buffer){0};
 }
 
 /* ---- life ---- */

@@ -53,13 +53,14 @@ static void on_lost(void *data, const char *sentence)
 		atomic_fetch_add(&heard.disorder, 1);
 }
 
-static struct presenter *open_presenter(void)
+static struct presenter *open_presenter_with(bool share_gl)
 {
 	struct error error = {""};
 	const struct presenter_params params = {.clock = &real_clock,
 											.log = &quiet,
 											.refresh_numerator = 250,
 											.refresh_denominator = 1,
+											.options = {.share_gl = share_gl},
 											.flip = on_flip,
 											.lost = on_lost};
 	atomic_store(&heard.vblank, 0);
@@ -72,6 +73,11 @@ static struct presenter *open_presenter(void)
 	struct presenter *presenter = presenter_create("kms", &params, &error);
 	CHECK_STRING(error.text, "present: the list is empty");
 	return presenter;
+}
+
+static struct presenter *open_presenter(void)
+{
+	return open_presenter_with(false);
 }
 
 static void close_presenter(struct presenter *presenter)
@@ -169,6 +175,37 @@ static void test_old_event(void)
 	show_pictures(presenter, 1, 5);
 	close_presenter(presenter);
 	atomic_store(&fake_kms.old_event, false);
+}
+
+/* ---- pictures that are larger than the display ---- */
+
+/* What the memory of a picture of this size holds, which holds 77 from now on. */
+static uint64_t use(struct presenter *presenter, bool in_gl, uint32_t scale)
+{
+	const struct presenter_impl *impl = presenter->impl;
+	const uint32_t width = FAKE_WIDTH * scale, height = FAKE_HEIGHT * scale;
+	struct presenter_image image;
+	CHECK_INT((in_gl ? impl->acquire_texture : impl->acquire)(presenter, width, height, &image), 0);
+	const uint64_t holds = image.holds;
+	image.holds = 77;
+	impl->release(presenter, &image);
+	return holds;
+}
+
+/* Memory that went, for pictures that need none, has come back empty. */
+static void test_larger_again(void)
+{
+	for (int in_gl = 0; in_gl < 2; in_gl++) {
+		struct presenter *presenter = open_presenter_with(true);
+		if (!presenter)
+			return;
+		CHECK_INT(use(presenter, in_gl, 2), 0);
+		CHECK_INT(use(presenter, in_gl, 2), 77);
+		CHECK_INT(use(presenter, in_gl, 1), 0);
+		CHECK_INT(use(presenter, in_gl, 2), 0);
+		CHECK_INT(use(presenter, in_gl, 3), 0);
+		close_presenter(presenter);
+	}
 }
 
 /* ---- while a GPU draws ---- */
@@ -325,6 +362,7 @@ int main(void)
 	RUN(test_pictures);
 	RUN(test_busy);
 	RUN(test_old_event);
+	RUN(test_larger_again);
 	RUN(test_slow_gpu);
 	RUN(test_stuck_flip);
 	RUN(test_other_console);
