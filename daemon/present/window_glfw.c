@@ -365,7 +365,10 @@ static void end(void *data)
 
 bool window_glfw_close(struct window *window)
 {
-	return !window->begun || call_safely(end, window);
+	if (!window->begun || call_safely(end, window))
+		return true;
+	x_mode_abandon(&window->mode);
+	return false;
 }
 
 /* ---- events ---- */

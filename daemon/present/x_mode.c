@@ -106,9 +106,17 @@ void x_mode_restore(struct x_mode *mode, Display *display)
 	place.resources = XRRGetScreenResourcesCurrent(display, DefaultRootWindow(display));
 	if (place.resources)
 		place.crtc = XRRGetCrtcInfo(display, place.resources, mode->crtc);
-	if (place.crtc && place.crtc->mode == mode->now)
+	const bool answered = place.crtc;
+	if (answered && place.crtc->mode == mode->now)
 		set_mode(&place, mode->crtc, mode->before);
 	leave_place(&place);
-	x_mode_guard_dismiss(&mode->guard);
+	if (answered)
+		x_mode_guard_dismiss(&mode->guard);
+	x_mode_abandon(mode);
+}
+
+void x_mode_abandon(struct x_mode *mode)
+{
+	x_mode_guard_call(&mode->guard);
 	*mode = (struct x_mode){0};
 }

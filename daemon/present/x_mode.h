@@ -29,4 +29,7 @@ double x_mode_change(struct x_mode *mode, Display *display, XID output, double r
 /* Unless somebody else has changed it meanwhile. Zeroes it. */
 void x_mode_restore(struct x_mode *mode, Display *display);
 
+/* The same without a connection, as one that broke: where the server is there still. Zeroes it. May hang. */
+void x_mode_abandon(struct x_mode *mode);
+
 #endif

@@ -58,11 +58,17 @@ void x_mode_guard_start(struct x_mode_guard *guard, const struct x_mode_guard_ta
 void x_mode_guard_dismiss(struct x_mode_guard *guard)
 {
 	const char goodbye = 1;
+	while (guard->pid > 0 && write(guard->fd, &goodbye, 1) < 0 && errno == EINTR)
+		;
+	x_mode_guard_call(guard);
+}
+
+void x_mode_guard_call(struct x_mode_guard *guard)
+{
 	if (guard->pid > 0) {
-		while (write(guard->fd, &goodbye, 1) < 0 && errno == EINTR)
-			;
 		close(guard->fd);
-		waitpid(guard->pid, NULL, 0);
+		while (waitpid(guard->pid, NULL, 0) < 0 && errno == EINTR)
+			;
 	}
 	*guard = (struct x_mode_guard){0};
 }

@@ -27,6 +27,8 @@ struct x_mode_guard {
 void x_mode_guard_start(struct x_mode_guard *guard, const struct x_mode_guard_task *task);
 /* All was left in good order. Zeroes it. */
 void x_mode_guard_dismiss(struct x_mode_guard *guard);
+/* It was not, and the daemon goes on: it is put back now, where there is a server still. May hang as that does. */
+void x_mode_guard_call(struct x_mode_guard *guard);
 
 /* First of all in main(): is it that process? Then it was, and main gives *status back. */
 bool x_mode_guard_run(int argc, char **argv, int *status);

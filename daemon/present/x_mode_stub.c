@@ -17,3 +17,8 @@ void x_mode_restore(struct x_mode *mode, Display *display)
 	(void)mode;
 	(void)display;
 }
+
+void x_mode_abandon(struct x_mode *mode)
+{
+	(void)mode;
+}

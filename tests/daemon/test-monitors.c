@@ -5,6 +5,7 @@
  * The GLFW presenter and monitors, under Xorg: full screen on the one that was chosen, in its mode that is nearest to
  * the rate wished for, without it when it is unplugged, and the desktop's mode as it was in the end.
  */
+#include <dirent.h>
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
@@ -65,6 +66,36 @@ static bool wait_for_rate(const char *monitor, double rate)
 	}
 	fprintf(stderr, "%s is at %.2f Hz\n", monitor, xorg_rate(monitor));
 	return false;
+}
+
+/* Processes that would put a mode back for the daemon. */
+static int count_guards(void)
+{
+	DIR *folder = opendir("/proc");
+	int count = 0;
+	for (const struct dirent *entry; folder && (entry = readdir(folder));) {
+		char path[300], state;
+		int parent = 0;
+		snprintf(path, sizeof(path), "/proc/%s/stat", entry->d_name);
+		FILE *file = fopen(path, "r");
+		if (file && fscanf(file, "%*d (%*[^)]) %c %d", &state, &parent) == 2)
+			count += parent == fixture.pid;
+		if (file)
+			fclose(file);
+	}
+	if (folder)
+		closedir(folder);
+	return count;
+}
+
+static bool wait_for_guards(int wanted)
+{
+	int count = count_guards();
+	for (int i = 0; i < 200 && count != wanted; i++) {
+		sleep_ms(50);
+		count = count_guards();
+	}
+	return count == wanted;
 }
 
 /* The daemon, and a game if there is one to be. */
@@ -176,10 +207,30 @@ static void test_server_dies(void)
 		CHECK(fills_the_right_monitor());
 		xvfb_stop(&server);
 		CHECK(fixture_logged(&fixture, "headless presents now"));
+		CHECK(wait_for_guards(0));
 		CHECK(xorg_start(&server, fixture.folder));
 	}
 	CHECK(wait_for_rate("DUMMY1", 120.0));
 	CHECK(fills_the_right_monitor());
+	stop();
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+}
+
+/* The server drops the daemon, and goes on: its mode is put back at once, and changed again with the next window. */
+static void test_cut_off(void)
+{
+	start("DUMMY1", "120", "--fullscreen");
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(wait_for_guards(1));
+	XKillClient(server.display, xvfb_find(&server, "Pursuit"));
+	XFlush(server.display);
+	CHECK(fixture_logged(&fixture, "glfw presents now"));
+	CHECK(wait_for_rate("DUMMY1", 120.0));
+	CHECK(fills_the_right_monitor());
+	CHECK(wait_for_guards(1));
+	xvfb_press(&server, xvfb_find(&server, "Pursuit"), "f");
+	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
+	CHECK(wait_for_guards(0));
 	stop();
 	CHECK(wait_for_rate("DUMMY1", XORG_USUAL_HZ));
 }
@@ -220,6 +271,7 @@ int main(int argc, char **argv)
 	RUN(test_in_and_out_by_key);
 	RUN(test_in_and_out_by_settings);
 	RUN(test_unplugged);
+	RUN(test_cut_off);
 	RUN(test_killed);
 	RUN(test_ends_while_the_server_hangs);
 	RUN(test_server_dies);
