@@ -17,6 +17,8 @@
 #define ENOUGH_PAIRS 5u
 /* Motion that leaves more than this of the change explains nothing. */
 #define UNEXPLAINED 0.92
+/* What is left is the border's and noise: motion that explains so much is right. */
+#define EXPLAINED 0.02
 /* Code values: below it too little changes to tell anything. */
 #define ENOUGH_CHANGE 0.003
 #define ENOUGH_SAMPLES 500u
@@ -191,6 +193,8 @@ static bool find_hypothesis(const struct inspect *inspect, struct list *list)
 {
 	const double right = inspect->cost[INSPECT_RIGHT], zero = inspect->cost[INSPECT_ZERO];
 	const enum inspect_hypothesis best = best_hypothesis(inspect);
+	if (right < EXPLAINED * zero)
+		return false;
 	if (is_better(inspect, best) && (same_length(best) || inspect->cost[best] < UNEXPLAINED * zero)) {
 		add(list, INSPECT_MISTAKE, hypotheses[best].code, hypotheses[best].advice,
 			"%s: read that way it leaves %.0f %% of the picture's change unexplained, as declared %.0f %%",
