@@ -14,8 +14,18 @@
 #include "daemon/engine/state.h"
 #include "daemon/engine/warm_up.h"
 
-static int apply_params(struct engine *engine, const struct engine_params *params, struct error *error)
+static void resolve_method(struct engine_params *params, const struct method *method)
 {
+	params->method = method->name;
+	if (method->halves_cells)
+		params->cell = params->cell / 2 > 4 ? params->cell / 2 : 4;
+	if (method->blurs_everywhere && params->blur == ENGINE_BLUR_DOUBTFUL)
+		params->blur = ENGINE_BLUR_EVERYWHERE;
+}
+
+int engine_set_params(struct engine *engine, const struct engine_params *params, struct error *error)
+{
+	struct next_params *next = &engine->next;
 	struct engine_params resolved = *params;
 	const struct method *method = method_find(params->method, error);
 	if (!method)
@@ -23,20 +33,30 @@ static int apply_params(struct engine *engine, const struct engine_params *param
 	int result = params_resolve(&resolved, error);
 	if (result < 0)
 		return result;
-	resolved.method = method->name;
-	if (method->halves_cells)
-		resolved.cell = resolved.cell / 2 > 4 ? resolved.cell / 2 : 4;
-	if (method->blurs_everywhere && resolved.blur == ENGINE_BLUR_DOUBTFUL)
-		resolved.blur = ENGINE_BLUR_EVERYWHERE;
-	/* What another method kept is not the frame before. */
-	if (engine->method != method)
-		pixel_state_forget(&engine->pixels);
-	if (engine->method != method || resolved.motion_model == ENGINE_MOTION_LINEAR)
-		bend_forget(&engine->bend);
-	engine->params = resolved;
-	engine->method = method;
-	engine->stream = 0;
+	resolve_method(&resolved, method);
+	const bool other = method != (next->method ? next->method : engine->method);
+	next->forgets_pixels |= other;
+	next->forgets_bend |= other || resolved.motion_model == ENGINE_MOTION_LINEAR;
+	next->params = resolved;
+	next->method = method;
 	return 0;
+}
+
+/* The frame begun last is shown no more: what comes is made as was asked for. */
+static void take_next_params(struct engine *engine)
+{
+	const struct next_params next = engine->next;
+	if (!next.method)
+		return;
+	/* What another method kept is not the frame before. */
+	if (next.forgets_pixels)
+		pixel_state_forget(&engine->pixels);
+	if (next.forgets_bend)
+		bend_forget(&engine->bend);
+	engine->params = next.params;
+	engine->method = next.method;
+	engine->stream = 0;
+	engine->next = (struct next_params){.method = NULL};
 }
 
 /* So that the first frame is not late. */
@@ -57,8 +77,9 @@ struct engine *engine_create(const struct engine_params *params, struct error *e
 		error_set(error, -ENOMEM, "out of memory");
 		return NULL;
 	}
-	if (apply_params(engine, params, error) < 0)
+	if (engine_set_params(engine, params, error) < 0)
 		goto fail;
+	take_next_params(engine);
 	engine->executor = executor_create(&engine->params, error);
 	if (!engine->executor)
 		goto fail;
@@ -97,6 +118,7 @@ const struct engine_info *engine_get_info(const struct engine *engine)
 static void begin_frame(struct engine *engine, const struct frame *frame, const struct engine_begin_params *params)
 {
 	struct executor *executor = engine->executor;
+	take_next_params(engine);
 	executor->ops->drop_times(executor);
 	report_begin(&engine->report, frame->header.frame_id, executor->ops->time_source(executor));
 	/* A frame of another stream is not the frame before. */
@@ -215,11 +237,6 @@ const struct engine_report *engine_get_report(struct engine *engine)
 	engine->report.plan_bytes = plan_bytes(&engine->plan) + warp_mesh_bytes(&engine->mesh) +
 								pixel_state_bytes(&engine->pixels) + bend_bytes(&engine->bend);
 	return &engine->report;
-}
-
-int engine_set_params(struct engine *engine, const struct engine_params *params, struct error *error)
-{
-	return apply_params(engine, params, error);
 }
 
 void engine_print_plan(const struct engine *engine, char *text, size_t size)

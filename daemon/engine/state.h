@@ -37,7 +37,15 @@ struct damage {
 	struct pursuit_rectangle rectangles[PURSUIT_MAX_DAMAGE];
 };
 
+/* What engine_set_params() asked for, until a frame is begun. */
+struct next_params {
+	struct engine_params params; /* all defaults filled in */
+	const struct method *method; /* NULL: nothing was */
+	bool forgets_pixels, forgets_bend;
+};
+
 struct engine {
+	struct next_params next;
 	struct engine_params params; /* all defaults filled in */
 	const struct method *method;
 	struct executor *executor;

@@ -337,12 +337,15 @@ static void make_engines(struct sequence *sequence, const struct engine_params *
 	sequence->anew = make_engine(params, 1);
 }
 
-static void change_engines(struct sequence *sequence, struct engine_params *params)
+static void change_engines(struct sequence *sequence, struct engine_params *params, uint32_t seed)
 {
 	struct error error;
 	if (pick(sequence, 40) == 0) {
 		*params = some_params(sequence);
 		CHECK_INT(engine_set_params(sequence->engine, params, &error), 0);
+		/* Settings are of the next frame. */
+		if (sequence->frame_id)
+			show(sequence, seed);
 		CHECK_INT(engine_set_params(sequence->anew, params, &error), 0);
 	}
 	/* Lost, as a GL context may be; the images stay. */
@@ -358,8 +361,8 @@ static uint64_t run_seed(uint32_t seed)
 	make_engines(&sequence, &params);
 	change_kind(&sequence, false);
 	for (uint32_t i = 0; i < FRAMES; i++) {
+		change_engines(&sequence, &params, seed);
 		change(&sequence);
-		change_engines(&sequence, &params);
 		begin(&sequence);
 		for (uint32_t shown = pick(&sequence, 4); shown > 0; shown--)
 			show(&sequence, seed);
