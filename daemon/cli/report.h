@@ -77,10 +77,10 @@ struct report_strip {
 struct report_gallery {
 	const struct report_work *work;
 	struct crop crop;
-	double time_s, speed;      /* of the crop: when, mean pixels a second */
-	uint8_t *truth;            /* seen of the truth, the crop; owned */
-	struct contact *sheet;     /* while it is made; owned */
-	char contact[REPORT_NAME]; /* file of the contact sheet in DIR/pictures, "": none */
+	double time_s, speed;          /* of the crop: when, mean pixels a second */
+	uint8_t *truth;                /* seen of the truth, the crop; owned */
+	struct contact *sheet;         /* while it is made; owned */
+	char contact[3 * REPORT_NAME]; /* file of the contact sheet in DIR/pictures, "": none */
 	struct report_shown shown[REPORT_SHOWN];
 	uint32_t shown_first, shown_count; /* of the first clip; 0: none */
 	struct report_strip *strips;       /* the truth first; owned */

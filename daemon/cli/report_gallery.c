@@ -143,13 +143,14 @@ int gallery_add(struct report_gallery *gallery, const struct report_variant *var
 	return contact_add(gallery->sheet, label, &before, &shown, &truth, error);
 }
 
-void gallery_end(struct report_gallery *gallery, const char *folder)
+void gallery_end(struct report_gallery *gallery, const struct report *report)
 {
 	char path[4096], title[128];
 	struct error error;
-	snprintf(gallery->contact, sizeof(gallery->contact), "contact-%.24s-n%u-%ux%u.png", gallery->work->name,
-			 gallery->work->n, gallery->work->size.width, gallery->work->size.height);
-	snprintf(path, sizeof(path), "%s/pictures/%s", folder, gallery->contact);
+	snprintf(gallery->contact, sizeof(gallery->contact), "contact-%u-%s-n%u-%ux%u.png",
+			 (unsigned)(gallery->work - report->works), gallery->work->name, gallery->work->n,
+			 gallery->work->size.width, gallery->work->size.height);
+	snprintf(path, sizeof(path), "%s/pictures/%s", report->options.out, gallery->contact);
 	snprintf(title, sizeof(title), "%s, N = %u", gallery->work->name, gallery->work->n);
 	if (contact_write(gallery->sheet, title, path, &error) < 0) {
 		fprintf(stderr, "pursuit report: %s\n", error.text);

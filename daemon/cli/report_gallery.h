@@ -15,7 +15,7 @@ int gallery_begin(struct report_gallery *gallery, const struct report_work *work
 int gallery_add(struct report_gallery *gallery, const struct report_variant *variant, const struct clip *clip,
 				uint8_t *const *pictures, struct error *error);
 
-/* Writes the contact sheet into the folder; what cannot be written is named on stderr. */
-void gallery_end(struct report_gallery *gallery, const char *folder);
+/* Writes the contact sheet among the report's pictures; what cannot be written is named on stderr. */
+void gallery_end(struct report_gallery *gallery, const struct report *report);
 
 #endif

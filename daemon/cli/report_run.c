@@ -260,7 +260,7 @@ static int run_work(struct run *run, uint32_t index, struct error *error)
 		result = run_clip(run, i, error);
 	frames_end(run->gallery);
 	if (run->gallery->work)
-		gallery_end(run->gallery, run->report->options.out);
+		gallery_end(run->gallery, run->report);
 	const int written = write_rows(run, &later);
 	if (result == 0 && written < 0)
 		return error_set(error, written, "%s", later.text);

@@ -327,6 +327,20 @@ class Report(common.Case):
             with open(self.path("out/report.html"), encoding="utf-8") as page:
                 self.assertIn(shown + ", N = 2", page.read())
 
+    def test_contact_sheets_do_not_replace_each_other(self):
+        """Of recordings whose names begin with the same; the page says which is whose, in whole characters."""
+        made = self.record("x.pursuit", size="96x54")
+        names = ["a" + "\u20ac" * 10 + one for one in "12"]
+        paths = [self.path(name + ".pursuit") for name in names]
+        for path in paths:
+            shutil.copy(made, path)
+        self.report("--scenes", "none", "--recordings", ",".join(paths), "--methods", "hold", "--vary", "none")
+        _, _, page = self.load()
+        sheets = [name for name in os.listdir(self.path("out/pictures")) if name.startswith("contact-")]
+        self.assertEqual(len(sheets), 2)
+        for sheet in sheets:
+            self.assertIn("pictures/" + sheet, page.text)
+
     def test_nothing_moves(self):
         result = self.must("report", "--scenes", "still", "--sizes", "64x36", "--n", "2", "--methods", "hold,grid", "--vary",
                            "none", "--antialias", "1", "--out", self.path("out"))
