@@ -272,7 +272,8 @@ static void keep_vblank(struct glfw *self)
 		}
 	}
 	const bool is_first = !self->fitted && pictures->flips.has_front && pictures->flips.front.group > 0;
-	const struct presenter_image shape = pictures->shapes[is_first ? pictures->flips.front.image : 0];
+	const struct presenter_image shape =
+		is_first ? pictures->shapes[pictures->flips.front.image] : (struct presenter_image){.data = NULL};
 	self->fitted |= is_first;
 	pthread_mutex_unlock(&pictures->lock);
 	if (is_first)
