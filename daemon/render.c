@@ -65,6 +65,7 @@ void render_set_tee(struct render *render, struct tee *tee)
 	close_last_tee(render);
 	render->last_tee.tee = render->tee;
 	render->last_tee.group = render->group;
+	render->last_tee.before = render->last_tee.serial;
 	render->last_tee.serial = render->serial;
 	render->tee = tee;
 	render->redraw |= tee != NULL; /* a picture that stays is its first one */
@@ -78,7 +79,7 @@ static void tell_tees(struct render *render, const struct presenter_flip *flip)
 		close_last_tee(render);
 	/* What was drawn before a tee came is not its. */
 	struct tee *tee = flip->serial <= render->last_tee.serial ? render->last_tee.tee : render->tee;
-	if (tee)
+	if (tee && flip->serial > render->last_tee.before)
 		tee_flip(tee, flip, &render->grid);
 }
 

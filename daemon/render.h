@@ -70,8 +70,9 @@ struct render {
 	struct view view;
 	struct tee *tee; /* NULL: none */
 	struct {
-		struct tee *tee; /* the one before, which has pictures that are not over yet; NULL: none */
-		uint64_t group, serial;
+		struct tee *tee;        /* the one before, which has pictures that are not over yet; NULL: none */
+		uint64_t group, serial; /* of its last picture */
+		uint64_t before;        /* serial of the last picture that was drawn before it came */
 	} last_tee;
 	bool settings_changed; /* the engine does not know yet */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */

@@ -254,6 +254,22 @@ static void test_tees(void)
 		CHECK_INT(count_flip("tee", FILES, reports[i].flip_ns), 1);
 }
 
+/* What was on its way when a tee came is not missed by it, however soon it goes again. */
+static void test_tees_that_go_at_once(void)
+{
+	char change[256];
+	for (int i = 0; i < 30; i++) {
+		publish();
+		snprintf(change, sizeof(change), "tee=%s.%d.y4m", path_of("short"), i);
+		must_set(change);
+		must_set("tee=");
+		check_reports();
+	}
+	wait_for_count("pictures of another size", 6 + 30);
+	CHECK_INT(count_logged("does not keep up"), 0);
+	check_account();
+}
+
 static void test_latency_logs(void)
 {
 	char change[256];
@@ -504,6 +520,7 @@ int main(int argc, char **argv)
 	RUN(test_engine);
 	RUN(test_recordings);
 	RUN(test_tees);
+	RUN(test_tees_that_go_at_once);
 	RUN(test_latency_logs);
 	RUN(test_stats);
 	RUN(test_socket);
