@@ -6,8 +6,6 @@
 #include <errno.h>
 #include <string.h>
 
-#include "daemon/engine/now.h"
-
 static int find_plane(const struct pursuit_frame_header *header, uint32_t role)
 {
 	for (uint32_t i = 0; i < header->plane_count && i < PURSUIT_MAX_PLANES; i++)
@@ -56,7 +54,7 @@ static void learn_damage(struct engine *engine, const struct pursuit_plane *colo
 	engine->ui_plane = *ui;
 	engine->content_before = engine->content;
 	if (!engine->damage.known || engine->damage.count)
-		engine->content = now_ns();
+		engine->content = engine_new_number(engine);
 }
 
 bool planes_changed(const struct engine *engine, uint32_t y, uint32_t count)

@@ -9,6 +9,7 @@
 #include "daemon/engine/bounds.h"
 #include "daemon/engine/convert.h"
 #include "daemon/engine/executor.h"
+#include "daemon/engine/now.h"
 #include "daemon/engine/pixel_state.h"
 #include "daemon/engine/plan.h"
 #include "daemon/engine/warp_mesh.h"
@@ -64,6 +65,7 @@ struct engine {
 	uint64_t sequence;                          /* the stream that it was of, whatever is left of it */
 	struct pursuit_plane color_plane, ui_plane; /* as they were taken; role 0: none */
 	struct damage damage;
+	uint64_t number;         /* given last: engine_new_number() */
 	uint64_t content;        /* a number of ORIGINAL with its UI, never used twice */
 	uint64_t content_before; /* of the frame before */
 	bool rested;             /* the frame before did not move */
@@ -79,5 +81,13 @@ struct engine {
 	bool levels_everywhere; /* the next pyramid must cover all, not only the marked tiles */
 	double boost;           /* k */
 };
+
+/* For what a picture shows: none that this engine gave before, and by the clock none of an engine that is gone. */
+static inline uint64_t engine_new_number(struct engine *engine)
+{
+	const uint64_t now = now_ns();
+	engine->number = now > engine->number ? now : engine->number + 1;
+	return engine->number;
+}
 
 #endif

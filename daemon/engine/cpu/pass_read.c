@@ -4,8 +4,6 @@
 /* A picture to the caller's memory, unless it was made there; and what that holds from now on. */
 #include "daemon/engine/cpu/executor_cpu.h"
 
-#include "daemon/engine/now.h"
-
 static int run(struct engine *engine, struct error *error)
 {
 	struct executor_cpu *executor = cpu_of(engine);
@@ -17,7 +15,7 @@ static int run(struct engine *engine, struct error *error)
 	if (id != PICTURE_SHOWN)
 		cpu_copy(executor, id, cpu_picture(engine, id));
 	if (!engine->job.holds)
-		engine->job.holds = now_ns();
+		engine->job.holds = engine_new_number(engine);
 	const uint64_t kept = 4 * contents_close(&executor->contents, engine->job.holds, shown);
 	engine->report.bytes_down += 4 * (uint64_t)engine->width * engine->height - kept;
 	engine->report.bytes_kept += kept;
