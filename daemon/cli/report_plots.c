@@ -44,6 +44,15 @@ static bool plot_open(struct plot *plot, const struct report *report, const char
 	return true;
 }
 
+/* With names of files, which may be anything, and a script can do anything: within '' only ' has a meaning. */
+static void put_title(FILE *script, const char *title)
+{
+	fputs("set title '", script);
+	for (; *title; title++)
+		fputs(*title == '\'' ? "''" : (const char[]){*title, '\0'}, script);
+	fputs("' noenhanced\n", script);
+}
+
 /* Runs gnuplot in the folder of the plots. False: it could not, or did not like the script. */
 static bool plot_close(struct plot *plot, const struct report *report)
 {
@@ -174,10 +183,10 @@ static bool plot_pareto(const struct report *report, const struct report_work *w
 			points[count++] = points[i];
 	}
 	if (count > 0 && plot_open(&plot, report, name, work ? 560 : 900, work ? 430 : 520)) {
+		put_title(plot.script, title);
 		fprintf(plot.script,
-				"set title '%s' noenhanced\nset logscale xy\nset xlabel 'engine, ms a displayed frame "
+				"set logscale xy\nset xlabel 'engine, ms a displayed frame "
 				"(median, middle half)'\nset ylabel '%s'\nset yrange [*:*]\nset key font ',11'\n",
-				title,
 				work && work->recording ? "root mean square error, code values" : "perceived error, code values");
 		write_front(plot.script, points, count);
 		write_points(report, plot.script, points, count);
@@ -254,13 +263,14 @@ static bool plot_time(const struct report *report, const struct report_work *wor
 {
 	struct plot plot;
 	struct pieces pieces = {0};
+	char title[2 * REPORT_NAME];
 	if (!plot_open(&plot, report, name, 560, 430))
 		return false;
-	fprintf(plot.script,
-			"set title '%s, N = %u' noenhanced\nset xlabel 'time of the scene; gaps are left out'\nset ylabel 'PSNR of "
-			"in-betweens, dB'\n"
-			"set key font ',11'\n",
-			work->name, work->n);
+	snprintf(title, sizeof(title), "%s, N = %u", work->name, work->n);
+	put_title(plot.script, title);
+	fprintf(plot.script, "set xlabel 'time of the scene; gaps are left out'\nset ylabel 'PSNR of "
+						 "in-betweens, dB'\n"
+						 "set key font ',11'\n");
 	for (uint32_t i = 0; i < report->row_count; i++) {
 		const struct report_row *row = &report->rows[i];
 		if (row->work != work || !row->variant->plain || !row->variant->engine)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The report: files, limits, an interrupt, a baseline, recordings, a machine without gnuplot."""
 import csv
+import html
 import html.parser
 import json
 import os
@@ -326,6 +327,18 @@ class Report(common.Case):
                 self.assertEqual([row["source"] for row in json.load(file)["rows"]], [shown])
             with open(self.path("out/report.html"), encoding="utf-8") as page:
                 self.assertIn(shown + ", N = 2", page.read())
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
+    def test_names_of_recordings_are_no_script(self):
+        made = self.record("x.pursuit", size="96x54")
+        for name in "a'; system \"touch owned\" #", "b`touch owned`@c$d \\":
+            shutil.copy(made, self.path(name + ".pursuit"))
+            self.report("--scenes", "none", "--recordings", self.path(name + ".pursuit"), "--methods", "hold")
+            plots = os.listdir(self.path("out/plots"))
+            self.assertNotIn("owned", plots)
+            self.assertIn("time-0-n2-96x54.svg", plots)
+            with open(self.path("out/plots/time-0-n2-96x54.svg"), encoding="utf-8") as file:
+                self.assertIn(html.escape(name, quote=False), html.escape(html.unescape(file.read()), quote=False))
 
     def test_contact_sheets_do_not_replace_each_other(self):
         """Of recordings whose names begin with the same; the page says which is whose, in whole characters."""
