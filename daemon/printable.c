@@ -4,14 +4,29 @@
 #include "daemon/printable.h"
 
 #include <jansson.h>
+#include <stdbool.h>
 #include <string.h>
+
+static bool is_control(unsigned char byte)
+{
+	return byte < ' ' || byte == 0x7f;
+}
+
+/* U+0080 to U+009F: to a terminal they are the sequences that begin with ESC, in one character. */
+static bool is_long_control(const char *c)
+{
+	return (unsigned char)c[0] == 0xc2 && (unsigned char)c[1] >= 0x80 && (unsigned char)c[1] < 0xa0;
+}
 
 void printable_clean(char *name)
 {
 	json_t *string = json_string(name);
-	for (char *c = name; *c; c++)
-		if ((unsigned char)*c < ' ' || *c == '\x7f' || (!string && (unsigned char)*c >= 0x80))
+	for (char *c = name; *c; c++) {
+		if (is_control((unsigned char)*c) || (!string && (unsigned char)*c >= 0x80))
 			*c = '?';
+		else if (is_long_control(c))
+			c[0] = c[1] = '?';
+	}
 	json_decref(string);
 }
 
