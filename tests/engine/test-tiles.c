@@ -302,6 +302,25 @@ static void test_hostile_motion(void)
 	engine_destroy(&engine);
 }
 
+/* Images take turns, as many as presenters have; what each was left with is known when its turn comes. */
+static void test_images_in_turn(void)
+{
+	const uint32_t images = 12;
+	uint64_t held[12] = {0};
+	struct contents contents = {0};
+	const struct layers layers = {.shown = PICTURE_ORIGINAL};
+	struct error error;
+	CHECK_INT(contents_begin(&contents, TILE_WIDTH, TILE_HEIGHT, false, 1, &layers, &error), 0);
+	for (uint32_t i = 0; i < 10 * images; i++) {
+		struct sheet sheet;
+		contents_open(&contents, held[i % images], &sheet);
+		sheet_has(&sheet, 0, contents_of(&contents, PICTURE_ORIGINAL, 0));
+		held[i % images] = 2 + i;
+		CHECK_INT(contents_close(&contents, held[i % images], &sheet), i < images ? 0 : TILE_PIXELS);
+	}
+	contents_finish(&contents);
+}
+
 static void test_refuses(void)
 {
 	struct error error = {""};
@@ -321,6 +340,7 @@ int main(void)
 	RUN(test_equal_bits);
 	RUN(test_no_allocation_in_the_steady_state);
 	RUN(test_hostile_motion);
+	RUN(test_images_in_turn);
 	RUN(test_refuses);
 	return test_result();
 }

@@ -97,11 +97,9 @@ static struct contents_image *find(struct contents *contents, uint64_t number)
 void contents_open(struct contents *contents, uint64_t held, struct sheet *sheet)
 {
 	struct contents_image *before = find(contents, held), *after = NULL;
-	if (before)
-		before->used = ++contents->uses;
 	for (uint32_t i = 0; i < CONTENTS_IMAGES; i++) {
 		struct contents_image *image = &contents->images[i];
-		if (image != before && (!after || !image->number || (after->number && image->used < after->used)))
+		if (image != before && (!after || !image->number || (after->number && image->made < after->made)))
 			after = image;
 	}
 	after->number = 0;
@@ -132,7 +130,7 @@ uint64_t contents_close(struct contents *contents, uint64_t number, const struct
 	for (uint32_t i = 0; i < CONTENTS_IMAGES; i++)
 		if (contents->images[i].tiles == sheet->after) {
 			contents->images[i].number = number;
-			contents->images[i].used = ++contents->uses;
+			contents->images[i].made = ++contents->makes;
 		}
 	return count_kept(contents, sheet);
 }

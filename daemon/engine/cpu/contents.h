@@ -23,7 +23,7 @@
 
 struct contents_image {
 	uint64_t number; /* that went out with it; 0: it may be used for another */
-	uint64_t used;   /* when it was asked for last, as struct contents counts */
+	uint64_t made;   /* when, as struct contents counts; the oldest makes room */
 	uint64_t *tiles;
 };
 
@@ -36,7 +36,7 @@ struct contents {
 	uint64_t *tiles;        /* by tile of ORIGINAL, row by row */
 	uint8_t *layered;       /* by tile: REAL and BETWEEN, if there are such, differ from ORIGINAL */
 	struct contents_image images[CONTENTS_IMAGES];
-	uint64_t uses;
+	uint64_t makes;
 	size_t capacity; /* tiles */
 };
 
