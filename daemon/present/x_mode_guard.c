@@ -19,6 +19,9 @@
 
 #define ARGUMENT "--put-mode-back"
 #define ARGUMENTS 6
+/* What it is told; the pipe's end is a call as well. */
+#define GOODBYE 1
+#define CALL 2
 
 /* ---- the daemon ---- */
 
@@ -55,22 +58,27 @@ void x_mode_guard_start(struct x_mode_guard *guard, const struct x_mode_guard_ta
 	*guard = (struct x_mode_guard){0};
 }
 
-void x_mode_guard_dismiss(struct x_mode_guard *guard)
-{
-	const char goodbye = 1;
-	while (guard->pid > 0 && write(guard->fd, &goodbye, 1) < 0 && errno == EINTR)
-		;
-	x_mode_guard_call(guard);
-}
-
-void x_mode_guard_call(struct x_mode_guard *guard)
+/* A word rather than the pipe's end, which a child of the daemon's may keep open. */
+static void tell(struct x_mode_guard *guard, char word)
 {
 	if (guard->pid > 0) {
+		while (write(guard->fd, &word, 1) < 0 && errno == EINTR)
+			;
 		close(guard->fd);
 		while (waitpid(guard->pid, NULL, 0) < 0 && errno == EINTR)
 			;
 	}
 	*guard = (struct x_mode_guard){0};
+}
+
+void x_mode_guard_dismiss(struct x_mode_guard *guard)
+{
+	tell(guard, GOODBYE);
+}
+
+void x_mode_guard_call(struct x_mode_guard *guard)
+{
+	tell(guard, CALL);
 }
 
 /* ---- the process ---- */
@@ -111,7 +119,7 @@ bool x_mode_guard_run(int argc, char **argv, int *status)
 	do
 		got = read(STDIN_FILENO, &byte, 1);
 	while (got < 0 && errno == EINTR);
-	if (got <= 0)
+	if (got <= 0 || byte == CALL)
 		put_back(argv);
 	*status = 0;
 	return true;
