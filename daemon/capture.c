@@ -76,9 +76,21 @@ static struct recorder *make_recorder(const char *path, int fd, struct error *er
 	return recorder_create(&params, error);
 }
 
+/* A pipe or a device could keep main and the recorder's thread for ever. */
+static bool is_regular(int fd)
+{
+	struct stat status;
+	return fstat(fd, &status) == 0 && S_ISREG(status.st_mode);
+}
+
 static struct recorder *open_recorder(const char *path, struct error *error)
 {
 	const int fd = open_at_once("record", path, 0, error);
+	if (fd >= 0 && !is_regular(fd)) {
+		close(fd);
+		error_set(error, -EINVAL, "record: %.300s: must be a regular file", path);
+		return NULL;
+	}
 	return fd < 0 ? NULL : make_recorder(path, fd, error);
 }
 
@@ -97,14 +109,12 @@ static struct recorder *use(struct capture *capture, struct recorder *recorder, 
 	return before;
 }
 
-/* A pipe or a device could keep the recorder's thread for ever. */
 static const char *unfit(int fd)
 {
-	struct stat status;
 	const int flags = fcntl(fd, F_GETFL);
 	if (fd < 0)
 		return "record: there is no file with the request";
-	if (fstat(fd, &status) < 0 || !S_ISREG(status.st_mode))
+	if (!is_regular(fd))
 		return "record: the file is no regular file";
 	if ((flags & O_ACCMODE) == O_RDONLY || (flags & O_PATH))
 		return "record: the file is not open for writing";

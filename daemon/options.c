@@ -173,8 +173,8 @@ static const struct option_row rows[] = {
 	TEXT(socket, "socket", OPTION_DAEMON, "",
 		 "Path of the socket; empty: $PURSUIT_SOCKET, else $XDG_RUNTIME_DIR/pursuit/socket, else /run/pursuit/socket."),
 	TEXT(record, "record", OPTION_DAEMON, "",
-		 "Record the frames received into this file, from the start. One that is there is kept as FILE.1, FILE.2 and "
-		 "so on."),
+		 "Record the frames received into this regular file, from the start. One that is there is kept as FILE.1, "
+		 "FILE.2 and so on."),
 	TEXT(stats, "stats", OPTION_DAEMON, "", "Write the statistics into this file at the end, as JSON."),
 	NUMBER(max_clients, "max-clients", OPTION_DAEMON, "16", 1, 256, "", "Clients that may be connected at once."),
 	NUMBER(max_frame_mb, "max-frame-mb", OPTION_DAEMON, "1024", 1, 1024, "MiB",

@@ -8,6 +8,7 @@
  */
 
 #include <errno.h>
+#include <fcntl.h>
 #include <jansson.h>
 #include <signal.h>
 #include <string.h>
@@ -436,6 +437,11 @@ static void test_pipes(void)
 		snprintf(change, sizeof(change), "%s=%s", pipes[i][0], path_of(pipes[i][1]));
 		check_refused(change, "nobody reads the pipe");
 	}
+	const int reader = open(path_of("pipe"), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	snprintf(change, sizeof(change), "record=%s", path_of("pipe"));
+	check_refused(change, "must be a regular file");
+	check_refused("record=/dev/null", "must be a regular file");
+	close(reader);
 	for (size_t i = 0; i < 3; i++)
 		unlink(path_of(names[i]));
 	check_account();
