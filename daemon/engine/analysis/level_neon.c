@@ -4,8 +4,8 @@
 #include <arm_neon.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <string.h>
 
+#include "daemon/engine/analysis/row_hash_words.h"
 #include "daemon/engine/analysis/values.h"
 
 static inline size_t decode_half_some(const uint16_t *halves, size_t count, float *values)
@@ -21,20 +21,6 @@ typedef float wide __attribute__((vector_size(16), aligned(4), may_alias));
 static inline wide wide_larger(wide a, wide b)
 {
 	return (wide)vmaxq_f32((float32x4_t)a, (float32x4_t)b);
-}
-
-typedef uint64_t hash_lanes;
-
-static inline hash_lanes hash_load(const uint8_t *bytes)
-{
-	hash_lanes words;
-	memcpy(&words, bytes, sizeof(words));
-	return words;
-}
-
-static inline hash_lanes hash_step(hash_lanes hash, hash_lanes words)
-{
-	return plan_hash_step(hash, words);
 }
 
 #define LEVEL_KERNELS plan_kernels_neon
