@@ -85,6 +85,14 @@ static bool wait_for_end(struct worker *worker, uint64_t patience_ns)
 	return worker->ended;
 }
 
+bool worker_wait(struct worker *worker, uint64_t patience_ns)
+{
+	pthread_mutex_lock(&worker->lock);
+	const bool ended = wait_for_end(worker, patience_ns);
+	pthread_mutex_unlock(&worker->lock);
+	return ended;
+}
+
 bool worker_destroy(struct worker **worker, uint64_t patience_ns, void (*gone)(void *data))
 {
 	struct worker *self = *worker;
