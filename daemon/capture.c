@@ -149,35 +149,33 @@ static void log_end(const struct log *log, const struct recorder_stats *stats, i
 		log_error(log, "recording: %s", error->text);
 }
 
-static void close_leftover(void *data)
+static void close_recorder(struct recorder *recorder, const struct log *log)
 {
-	struct leftover *leftover = data;
 	struct recorder_stats stats = {0};
 	struct error error = {""};
-	const int result = recorder_destroy(&leftover->recorder, &stats, &error);
-	log_end(leftover->log, &stats, result, &error);
-	free(leftover);
+	const int result = recorder_destroy(&recorder, &stats, &error);
+	log_end(log, &stats, result, &error);
+}
+
+static void close_leftover(void *data)
+{
+	const struct leftover leftover = *(struct leftover *)data;
+	free(data);
+	close_recorder(leftover.recorder, leftover.log);
 }
 
 /* Nobody waits for it. */
 static void let_go(struct capture *capture, struct recorder *recorder)
 {
-	struct leftover *leftover = malloc(sizeof(*leftover));
-	struct leftover here = {recorder, capture->params.log};
-	if (!recorder) {
-		free(leftover);
+	if (!recorder)
+		return;
+	struct leftover *leftover = capture->params.closer ? malloc(sizeof(*leftover)) : NULL;
+	if (!leftover) {
+		close_recorder(recorder, capture->params.log);
 		return;
 	}
-	if (leftover && capture->params.closer) {
-		*leftover = here;
-		closer_add(capture->params.closer, close_leftover, leftover);
-		return;
-	}
-	struct recorder_stats stats = {0};
-	struct error error = {""};
-	free(leftover);
-	const int result = recorder_destroy(&here.recorder, &stats, &error);
-	log_end(here.log, &stats, result, &error);
+	*leftover = (struct leftover){recorder, capture->params.log};
+	closer_add(capture->params.closer, close_leftover, leftover);
 }
 
 static void *run(void *data)
