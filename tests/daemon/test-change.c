@@ -161,15 +161,20 @@ static void test_engine(void)
 
 /* ---- files ---- */
 
-static uint64_t sum_logged(const char *before)
+static const char *read_log(void)
 {
 	static char content[1 << 20];
-	uint64_t sum = 0;
 	FILE *log = fopen(fixture.log, "r");
 	const size_t length = fread(content, 1, sizeof(content) - 1, log);
 	fclose(log);
 	content[length] = 0;
-	for (const char *at = content; (at = strstr(at, before)) != NULL;) {
+	return content;
+}
+
+static uint64_t sum_logged(const char *before)
+{
+	uint64_t sum = 0;
+	for (const char *at = read_log(); (at = strstr(at, before)) != NULL;) {
 		at += strlen(before);
 		sum += strtoull(at, NULL, 10);
 	}
@@ -178,13 +183,8 @@ static uint64_t sum_logged(const char *before)
 
 static unsigned count_logged(const char *text)
 {
-	static char content[1 << 20];
 	unsigned count = 0;
-	FILE *log = fopen(fixture.log, "r");
-	const size_t length = fread(content, 1, sizeof(content) - 1, log);
-	fclose(log);
-	content[length] = 0;
-	for (const char *at = content; (at = strstr(at, text)) != NULL; at++)
+	for (const char *at = read_log(); (at = strstr(at, text)) != NULL; at++)
 		count++;
 	return count;
 }
