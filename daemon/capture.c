@@ -58,11 +58,7 @@ char *capture_settings_text(const struct settings *settings, const char *equals)
 	FILE *out = open_memstream(&text, &size);
 	if (!out)
 		return NULL;
-	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
-		settings_get(settings, row->name, value, sizeof(value));
-		fprintf(out, "%s%s%s\n", row->name, equals, value);
-	}
+	settings_print(settings, "", equals, out);
 	fclose(out);
 	return text;
 }

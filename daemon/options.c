@@ -379,6 +379,15 @@ void settings_describe_values(const struct option_row *row, char *text, size_t s
 	}
 }
 
+void settings_print(const struct settings *settings, const char *before, const char *equals, FILE *out)
+{
+	for (const struct option_row *row = rows; row->name; row++) {
+		char value[1024];
+		settings_get(settings, row->name, value, sizeof(value));
+		fprintf(out, "%s%s%s%s\n", before, row->name, equals, value);
+	}
+}
+
 /* Words in lines of a readable length, all but the first indented. */
 static void print_wrapped(const char *text, int indent, FILE *out)
 {

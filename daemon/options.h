@@ -140,6 +140,9 @@ int settings_argument(struct settings *settings, unsigned group_mask, int argc, 
 /* The row that an argument like "--name", "--name=value" or "--no-name" is about, NULL none. Static. */
 const struct option_row *settings_argument_row(const char *argument);
 
+/* All rows and what these settings have, a line each: `before`, the name, `equals`, the value. */
+void settings_print(const struct settings *settings, const char *before, const char *equals, FILE *out);
+
 /* Help lines of the rows of these groups. */
 void settings_print_help(unsigned group_mask, FILE *out);
 

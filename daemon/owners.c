@@ -148,11 +148,7 @@ static char *print_header(const struct settings *settings)
 	if (!out)
 		return NULL;
 	fprintf(out, "program: pursuitd %s\ngpio library: %s\n", PURSUITD_VERSION, chip_library());
-	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
-		settings_get(settings, row->name, value, sizeof(value));
-		fprintf(out, "setting %s = %s\n", row->name, value);
-	}
+	settings_print(settings, "setting ", " = ", out);
 	fclose(out);
 	return header;
 }
