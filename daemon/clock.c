@@ -6,17 +6,44 @@
 #include <errno.h>
 #include <time.h>
 
-static uint64_t real_now(struct clock *clock)
+#define SECOND UINT64_C(1000000000)
+
+static struct timespec timespec_of(uint64_t time_ns)
+{
+	return (struct timespec){(time_t)(time_ns / SECOND), (long)(time_ns % SECOND)};
+}
+
+uint64_t clock_monotonic_ns(void)
 {
 	struct timespec now;
-	(void)clock;
 	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
+	return (uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec;
+}
+
+void clock_cond_init(pthread_cond_t *condition)
+{
+	pthread_condattr_t attributes;
+	pthread_condattr_init(&attributes);
+	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+	pthread_cond_init(condition, &attributes);
+	pthread_condattr_destroy(&attributes);
+}
+
+bool clock_cond_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until_ns)
+{
+	const struct timespec until = timespec_of(until_ns);
+	return pthread_cond_timedwait(condition, lock, &until) != ETIMEDOUT;
+}
+
+static uint64_t real_now(struct clock *clock)
+{
+	(void)clock;
+	return clock_monotonic_ns();
 }
 
 static void real_wait_until(struct clock *clock, uint64_t time_ns)
 {
-	const struct timespec then = {(time_t)(time_ns / UINT64_C(1000000000)), (long)(time_ns % UINT64_C(1000000000))};
+	const struct timespec then = timespec_of(time_ns);
 	(void)clock;
 	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &then, NULL) == EINTR)
 		;

@@ -10,7 +10,9 @@
 #ifndef PURSUIT_CLOCK_H
 #define PURSUIT_CLOCK_H
 
+#include <pthread.h>
 #include <stdatomic.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 struct clock {
@@ -28,6 +30,17 @@ static inline void clock_wait_until(struct clock *clock, uint64_t time_ns)
 {
 	clock->wait_until(clock, time_ns);
 }
+
+/* CLOCK_MONOTONIC, ns: for who is at no clock of its own. Any thread. */
+uint64_t clock_monotonic_ns(void);
+
+/* A condition for clock_cond_wait(). */
+void clock_cond_init(pthread_cond_t *condition);
+/*
+ * With the lock: sleeps until the condition is signalled, or for no reason, until that time of CLOCK_MONOTONIC at most.
+ * False: it is over.
+ */
+bool clock_cond_wait(pthread_cond_t *condition, pthread_mutex_t *lock, uint64_t until_ns);
 
 /* CLOCK_MONOTONIC, absolute waits. Needs no finish. */
 void clock_init_real(struct clock *clock);

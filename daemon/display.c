@@ -12,6 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/clock.h"
+
 #define SECOND UINT64_C(1000000000)
 #define FIRST_DELAY (SECOND / 4)
 #define LAST_DELAY (8 * SECOND)
@@ -312,11 +314,9 @@ static void on_wake(void *data, uint32_t events)
 /* Has the user let go of the one that was taken away? */
 static bool wait_for_user(struct display *display)
 {
-	struct timespec until;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	until.tv_sec += (time_t)(PATIENCE / SECOND);
+	const uint64_t until_ns = clock_monotonic_ns() + PATIENCE;
 	pthread_mutex_lock(&display->lock);
-	while (!display->let_go && pthread_cond_timedwait(&display->said, &display->lock, &until) == 0)
+	while (!display->let_go && clock_cond_wait(&display->said, &display->lock, until_ns))
 		;
 	const bool let_go = display->let_go;
 	pthread_mutex_unlock(&display->lock);
@@ -465,7 +465,6 @@ static int start(struct display *display, struct error *error)
 struct display *display_create(const struct display_params *params, struct error *error)
 {
 	struct display *display = calloc(1, sizeof(*display));
-	pthread_condattr_t attributes;
 	if (!display) {
 		error_set(error, -ENOMEM, "display: out of memory");
 		return NULL;
@@ -474,10 +473,7 @@ struct display *display_create(const struct display_params *params, struct error
 	display->settings = *params->settings;
 	display->wake_fd = display->retry_fd = -1;
 	pthread_mutex_init(&display->lock, NULL);
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_cond_init(&display->said, &attributes);
-	pthread_condattr_destroy(&attributes);
+	clock_cond_init(&display->said);
 	if (start(display, error) < 0)
 		display_destroy(&display);
 	return display;

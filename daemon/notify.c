@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/clock.h"
+
 /* Looks in one interval: with three, one that comes late costs nothing. */
 #define LOOKS 3u
 
@@ -55,11 +57,8 @@ void notify_ready(const struct log *log)
 
 void notify_reloading(const struct log *log)
 {
-	struct timespec now;
 	char text[64];
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	snprintf(text, sizeof(text), "RELOADING=1\nMONOTONIC_USEC=%" PRIu64,
-			 (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u);
+	snprintf(text, sizeof(text), "RELOADING=1\nMONOTONIC_USEC=%" PRIu64, clock_monotonic_ns() / 1000u);
 	notify_send(log, text);
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
+#include "daemon/clock.h"
 #include "daemon/output_state.h"
 
 #include <errno.h>
@@ -125,17 +126,13 @@ static void free_output(struct output *output)
 static struct output *allocate(const struct output_params *params)
 {
 	struct output *output = calloc(1, sizeof(*output));
-	pthread_condattr_t attributes;
 	if (!output)
 		return NULL;
 	output->params = *params;
 	output->settings = *params->settings;
 	snprintf(output->info.method, sizeof(output->info.method), "%s", params->settings->method);
 	output->event_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_cond_init(&output->wake, &attributes);
-	pthread_condattr_destroy(&attributes);
+	clock_cond_init(&output->wake);
 	pthread_mutex_init(&output->lock, NULL);
 	pthread_mutex_init(&output->stats_lock, NULL);
 	pthread_mutex_init(&output->record_lock, NULL);

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include <errno.h>
 #include <sched.h>
 #include <string.h>
 #include <sys/prctl.h>
-#include <time.h>
 
+#include "daemon/clock.h"
 #include "daemon/output_state.h"
 #include "daemon/slices.h"
 
@@ -71,12 +70,11 @@ static void wait_for_work(struct output *output, uint64_t time_ns)
 	const bool soon = time_ns < now_ns + SOON_NS;
 	pthread_mutex_lock(&output->lock);
 	const uint64_t end_ns = output->main_is_busy && now_ns + LOOK_NS < time_ns ? now_ns + LOOK_NS : time_ns;
-	const struct timespec end = {(time_t)(end_ns / UINT64_C(1000000000)), (long)(end_ns % UINT64_C(1000000000))};
 	output->wakes_soon = soon;
 	while (!output->woken && !output->stop && (soon || output->flip_count == 0)) {
 		if (end_ns == RENDER_NEVER)
 			pthread_cond_wait(&output->wake, &output->lock);
-		else if (pthread_cond_timedwait(&output->wake, &output->lock, &end) == ETIMEDOUT)
+		else if (!clock_cond_wait(&output->wake, &output->lock, end_ns))
 			break;
 	}
 	pthread_mutex_unlock(&output->lock);

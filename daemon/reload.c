@@ -12,6 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/clock.h"
+
 /* After the last change of a burst, but not later than this after its first one. */
 #define QUIET_NS UINT64_C(100000000)
 #define LONGEST_NS UINT64_C(1000000000)
@@ -121,16 +123,9 @@ static bool concerns_us(const struct reload *reload, const struct inotify_event 
 
 /* ---- events ---- */
 
-static uint64_t now_ns(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * UINT64_C(1000000000) + (uint64_t)now.tv_nsec;
-}
-
 static void set_timer(struct reload *reload)
 {
-	const uint64_t now = now_ns();
+	const uint64_t now = clock_monotonic_ns();
 	reload->first_ns = reload->first_ns ? reload->first_ns : now;
 	const uint64_t latest = reload->first_ns + LONGEST_NS, wished = now + QUIET_NS;
 	const uint64_t then = wished < latest ? wished : latest;

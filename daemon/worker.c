@@ -6,9 +6,8 @@
 #include <errno.h>
 #include <pthread.h>
 #include <stdlib.h>
-#include <time.h>
 
-#define SECOND UINT64_C(1000000000)
+#include "daemon/clock.h"
 
 struct worker {
 	void (*run)(void *data);
@@ -54,17 +53,13 @@ static void *run(void *data)
 int worker_create(struct worker **worker, void (*function)(void *data), void *data)
 {
 	struct worker *self = calloc(1, sizeof(*self));
-	pthread_condattr_t attributes;
 	*worker = NULL;
 	if (!self)
 		return -ENOMEM;
 	self->run = function;
 	self->data = data;
 	pthread_mutex_init(&self->lock, NULL);
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_cond_init(&self->end, &attributes);
-	pthread_condattr_destroy(&attributes);
+	clock_cond_init(&self->end);
 	const int result = pthread_create(&self->thread, NULL, run, self);
 	if (result != 0)
 		free_worker(self);
@@ -76,11 +71,8 @@ int worker_create(struct worker **worker, void (*function)(void *data), void *da
 /* With the lock. pthread_clockjoin_np() would do, but ThreadSanitizer of GCC 12 does not see it. */
 static bool wait_for_end(struct worker *worker, uint64_t patience_ns)
 {
-	struct timespec until;
-	clock_gettime(CLOCK_MONOTONIC, &until);
-	const uint64_t ns = (uint64_t)until.tv_nsec + patience_ns;
-	until = (struct timespec){until.tv_sec + (time_t)(ns / SECOND), (long)(ns % SECOND)};
-	while (!worker->ended && pthread_cond_timedwait(&worker->end, &worker->lock, &until) != ETIMEDOUT)
+	const uint64_t until_ns = clock_monotonic_ns() + patience_ns;
+	while (!worker->ended && clock_cond_wait(&worker->end, &worker->lock, until_ns))
 		;
 	return worker->ended;
 }

@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "client/pursuit.h"
+#include "daemon/clock.h"
 #include "figures.h"
 
 #define ATTACH_LIMIT_NS UINT64_C(5000000000)
@@ -27,31 +28,24 @@ struct demo_client {
 	uint32_t times;
 };
 
-static uint64_t now_ns(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * 1000000000u + (uint64_t)now.tv_nsec;
-}
-
 static void sleep_until(uint64_t time_ns)
 {
 	const struct timespec time = {(time_t)(time_ns / 1000000000u), (long)(time_ns % 1000000000u)};
-	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, NULL) == EINTR && now_ns() < time_ns)
+	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, NULL) == EINTR && clock_monotonic_ns() < time_ns)
 		;
 }
 
 static int wait_for_attach(struct demo_client *client, struct error *error)
 {
-	uint64_t start = now_ns();
+	uint64_t start = clock_monotonic_ns();
 	struct pursuit_status status;
 	do {
 		pursuit_update(client->stream);
 		pursuit_get_status(client->stream, &status);
 		if (status.state == PURSUIT_STATE_ATTACHED)
 			return 0;
-		sleep_until(now_ns() + 5000000);
-	} while (status.state != PURSUIT_STATE_REFUSED && now_ns() - start < ATTACH_LIMIT_NS);
+		sleep_until(clock_monotonic_ns() + 5000000);
+	} while (status.state != PURSUIT_STATE_REFUSED && clock_monotonic_ns() - start < ATTACH_LIMIT_NS);
 	return error_set(error, -ETIMEDOUT, "the daemon did not take the stream: %s", status.message);
 }
 
@@ -128,10 +122,10 @@ static int render_one(struct demo_client *client, uint64_t index, struct error *
 	double previous = client->submitted || index ? (double)before * step : -step;
 	struct scene_textures textures;
 	struct scene_camera camera;
-	uint64_t start = now_ns();
+	uint64_t start = clock_monotonic_ns();
 	if (!scene_source_render(client->params.source, (double)index * step, previous, &textures, &camera))
 		return error_set(error, -EIO, "GL failed to render the scene");
-	uint64_t rendered = now_ns();
+	uint64_t rendered = clock_monotonic_ns();
 	struct pursuit_frame frame = {
 		.time_ns = client->epoch_ns + scene_source_time(rate, index),
 		.flags = PURSUIT_FLAG_MATRICES | (camera.cut ? (uint32_t)PURSUIT_FLAG_CUT : 0u),
@@ -149,7 +143,7 @@ static int render_one(struct demo_client *client, uint64_t index, struct error *
 		.bottom_up = 1,
 	};
 	pursuit_gl_submit(client->gl, &read, &frame);
-	note_times(client, start, rendered, now_ns());
+	note_times(client, start, rendered, clock_monotonic_ns());
 	client->previous = index;
 	client->submitted++;
 	return 0;
@@ -158,7 +152,7 @@ static int render_one(struct demo_client *client, uint64_t index, struct error *
 /* The next moment on the grid that is not over yet; a frame that is late by less than an interval is still rendered. */
 static uint64_t next_index(struct demo_client *client)
 {
-	uint64_t index = client->next, now = now_ns();
+	uint64_t index = client->next, now = clock_monotonic_ns();
 	while (client->epoch_ns + scene_source_time(&client->params.rate, index + 1) <= now)
 		index++;
 	client->skipped += index - client->next;
@@ -199,12 +193,12 @@ int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(voi
 {
 	struct pursuit_feedback_report report;
 	if (client->submitted == 0)
-		client->epoch_ns = now_ns() + 10000000;
+		client->epoch_ns = clock_monotonic_ns() + 10000000;
 	else
 		client->next = next_index(client);
-	uint64_t end = now_ns() + (uint64_t)(seconds * 1e9);
+	uint64_t end = clock_monotonic_ns() + (uint64_t)(seconds * 1e9);
 	int result = 0;
-	while (result == 0 && now_ns() < end && !stop(context)) {
+	while (result == 0 && clock_monotonic_ns() < end && !stop(context)) {
 		if (client->submitted)
 			client->next = next_index(client);
 		sleep_until(client->epoch_ns + scene_source_time(&client->params.rate, client->next));

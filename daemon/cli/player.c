@@ -5,8 +5,8 @@
 
 #include <errno.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "daemon/clock.h"
 #include "progress.h"
 
 #define PLAN_TEXT_BYTES 4096u
@@ -44,9 +44,7 @@ static int canvas_render(struct canvas *canvas, struct engine *engine, const str
 
 static double now_ms(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+	return (double)clock_monotonic_ns() / 1e6;
 }
 
 static int show_picture(struct player *player, struct canvas *canvas, const struct beginning *beginning,

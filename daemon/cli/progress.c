@@ -2,17 +2,15 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include "progress.h"
+#include "daemon/clock.h"
 
 #include <inttypes.h>
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
 void progress_show(struct progress *progress, uint64_t done, uint64_t total)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	uint64_t ms = (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
+	const uint64_t ms = clock_monotonic_ns() / 1000000;
 	if (ms - progress->last_ms < 100 || !isatty(STDERR_FILENO))
 		return;
 	progress->last_ms = ms;

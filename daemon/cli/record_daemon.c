@@ -11,6 +11,7 @@
 
 #include "args.h"
 #include "control.h"
+#include "daemon/clock.h"
 #include "interrupt.h"
 
 #define VERB "record"
@@ -19,14 +20,9 @@
 static void wait_until_over(double seconds)
 {
 	struct timespec step = {0, STEP_NS};
-	double passed = 0;
-	struct timespec start, now;
-	clock_gettime(CLOCK_MONOTONIC, &start);
-	while (!interrupt_seen() && (seconds <= 0 || passed < seconds)) {
+	const uint64_t start_ns = clock_monotonic_ns();
+	while (!interrupt_seen() && (seconds <= 0 || (double)(clock_monotonic_ns() - start_ns) / 1e9 < seconds))
 		nanosleep(&step, NULL);
-		clock_gettime(CLOCK_MONOTONIC, &now);
-		passed = (double)(now.tv_sec - start.tv_sec) + (double)(now.tv_nsec - start.tv_nsec) / 1e9;
-	}
 }
 
 static json_int_t number_of(const json_t *reply, const char *name)

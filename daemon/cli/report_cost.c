@@ -11,8 +11,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "daemon/clock.h"
 #include "interrupt.h"
 #include "scene_source.h"
 
@@ -42,9 +42,7 @@ struct still {
 
 static double now_ms(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+	return (double)clock_monotonic_ns() / 1e6;
 }
 
 static void still_finish(struct still *still)

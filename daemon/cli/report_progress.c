@@ -2,11 +2,11 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include "report_progress.h"
+#include "daemon/clock.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 #define BAR 24u
@@ -14,9 +14,7 @@
 
 static double now_s(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + (double)now.tv_nsec / 1e9;
+	return (double)clock_monotonic_ns() / 1e9;
 }
 
 void report_progress_begin(struct report_progress *progress, uint32_t total)

@@ -5,16 +5,14 @@
 
 #include <errno.h>
 #include <stdlib.h>
-#include <time.h>
 
+#include "daemon/clock.h"
 #include "interrupt.h"
 #include "report.h"
 
 static double now_ms(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec * 1e3 + (double)now.tv_nsec / 1e6;
+	return (double)clock_monotonic_ns() / 1e6;
 }
 
 int report_add_time(struct report_row *row, double ms, struct error *error)

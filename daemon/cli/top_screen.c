@@ -2,6 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 #include "top_screen.h"
+#include "daemon/clock.h"
 
 #include <errno.h>
 #include <poll.h>
@@ -10,7 +11,6 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/signalfd.h>
-#include <time.h>
 #include <unistd.h>
 
 #define DEFAULT_COLUMNS 100u
@@ -132,9 +132,7 @@ void top_screen_close(struct top_screen *screen)
 
 static uint64_t now_ms(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
+	return clock_monotonic_ns() / 1000000;
 }
 
 static bool must_wait(struct top_screen *screen)

@@ -8,10 +8,10 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "args.h"
+#include "daemon/clock.h"
 #include "demo_client.h"
 #include "demo_daemon.h"
 #include "demo_score.h"
@@ -166,9 +166,7 @@ static void give_way(void)
 
 static double clock_seconds(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (double)now.tv_sec + (double)now.tv_nsec / 1e9;
+	return (double)clock_monotonic_ns() / 1e9;
 }
 
 /* What the daemon shows now; a key in the window may have changed it. */

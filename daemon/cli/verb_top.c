@@ -6,12 +6,12 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "args.h"
 #include "color.h"
 #include "control.h"
+#include "daemon/clock.h"
 #include "json_out.h"
 #include "latency_fetch.h"
 #include "top_keys.h"
@@ -115,9 +115,7 @@ static int press(struct top *top, char key, struct error *error)
 
 static uint64_t now_ms(void)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * 1000 + (uint64_t)now.tv_nsec / 1000000;
+	return clock_monotonic_ns() / 1000000;
 }
 
 static int run_screen(struct top *top, struct top_screen *screen, uint32_t interval_ms, struct error *error)

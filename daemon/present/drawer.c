@@ -39,11 +39,6 @@ struct drawer {
 	struct glx_sync sync;
 };
 
-static struct timespec timespec_of(uint64_t time_ns)
-{
-	return (struct timespec){(time_t)(time_ns / SECOND), (long)(time_ns % SECOND)};
-}
-
 static void free_drawer(struct drawer *drawer)
 {
 	pthread_cond_destroy(&drawer->wake);
@@ -160,7 +155,6 @@ static void run(void *data)
 struct drawer *drawer_create(struct window *window, struct error *error)
 {
 	struct drawer *drawer = calloc(1, sizeof(*drawer));
-	pthread_condattr_t attributes;
 	if (!drawer) {
 		error_set(error, -ENOMEM, "glfw: out of memory");
 		return NULL;
@@ -168,11 +162,8 @@ struct drawer *drawer_create(struct window *window, struct error *error)
 	drawer->window = window;
 	clock_init_real(&drawer->clock);
 	pthread_mutex_init(&drawer->lock, NULL);
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_cond_init(&drawer->wake, &attributes);
-	pthread_cond_init(&drawer->done, &attributes);
-	pthread_condattr_destroy(&attributes);
+	clock_cond_init(&drawer->wake);
+	clock_cond_init(&drawer->done);
 	const int result = worker_create(&drawer->worker, run, drawer);
 	if (result < 0) {
 		error_set(error, result, "glfw: cannot start a thread: %s", strerror(-result));
@@ -184,11 +175,9 @@ struct drawer *drawer_create(struct window *window, struct error *error)
 
 int drawer_wait_for_start(struct drawer *drawer, struct error *error)
 {
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	const struct timespec until = timespec_of((uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec + DRAWER_START_NS);
+	const uint64_t until_ns = clock_monotonic_ns() + DRAWER_START_NS;
 	pthread_mutex_lock(&drawer->lock);
-	while (!drawer->started && pthread_cond_timedwait(&drawer->done, &drawer->lock, &until) != ETIMEDOUT)
+	while (!drawer->started && clock_cond_wait(&drawer->done, &drawer->lock, until_ns))
 		;
 	int result = drawer->start_result;
 	if (!drawer->started)
@@ -242,9 +231,8 @@ void drawer_order(struct drawer *drawer, const struct presenter_image *image, ui
 
 bool drawer_wait(struct drawer *drawer, uint64_t until_ns, struct drawer_swap *swap)
 {
-	const struct timespec until = timespec_of(until_ns);
 	pthread_mutex_lock(&drawer->lock);
-	while (drawer->under_way && pthread_cond_timedwait(&drawer->done, &drawer->lock, &until) != ETIMEDOUT)
+	while (drawer->under_way && clock_cond_wait(&drawer->done, &drawer->lock, until_ns))
 		;
 	const bool done = !drawer->under_way;
 	*swap = drawer->swap;

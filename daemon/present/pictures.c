@@ -6,8 +6,8 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
+#include "daemon/clock.h"
 #include "daemon/present/vsync.h"
 
 /* A thread that slept so many vblanks too long skips them. */
@@ -15,7 +15,6 @@
 
 void pictures_init(struct pictures *pictures, const struct presenter_impl *impl, const struct presenter_params *params)
 {
-	pthread_condattr_t attributes;
 	memset(pictures, 0, sizeof(*pictures));
 	pictures->presenter.impl = impl;
 	pictures->params = *params;
@@ -23,10 +22,7 @@ void pictures_init(struct pictures *pictures, const struct presenter_impl *impl,
 	pictures->grid.denominator = params->refresh_denominator;
 	pictures->grid.epoch_ns = clock_now(params->clock);
 	pthread_mutex_init(&pictures->lock, NULL);
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_cond_init(&pictures->wake, &attributes);
-	pthread_condattr_destroy(&attributes);
+	clock_cond_init(&pictures->wake);
 }
 
 void pictures_finish(struct pictures *pictures)

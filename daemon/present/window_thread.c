@@ -11,9 +11,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/eventfd.h>
-#include <time.h>
 #include <unistd.h>
 
+#include "daemon/clock.h"
 #include "daemon/worker.h"
 
 #define SECOND UINT64_C(1000000000)
@@ -33,13 +33,6 @@ struct window_thread {
 	int result;
 	struct error error;
 };
-
-static uint64_t now_ns(void)
-{
-	struct timespec now;
-	clock_gettime(CLOCK_MONOTONIC, &now);
-	return (uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec;
-}
 
 static void free_thread(void *data)
 {
@@ -95,7 +88,7 @@ static void run(void *data)
 	while (result == 0 && !is_to_stop(thread)) {
 		atomic_store(&thread->busy_since_ns, 0);
 		wait_for_work(thread, more);
-		atomic_store(&thread->busy_since_ns, now_ns());
+		atomic_store(&thread->busy_since_ns, clock_monotonic_ns());
 		more = work->process(work->data) && more;
 	}
 	work->close(work->data);
@@ -106,28 +99,23 @@ static void run(void *data)
 static struct window_thread *allocate(const struct window_work *work)
 {
 	struct window_thread *thread = calloc(1, sizeof(*thread));
-	pthread_condattr_t attributes;
 	if (!thread) {
 		work->release(work->data);
 		return NULL;
 	}
 	thread->work = *work;
 	thread->wake_fd = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-	atomic_init(&thread->busy_since_ns, now_ns());
+	atomic_init(&thread->busy_since_ns, clock_monotonic_ns());
 	pthread_mutex_init(&thread->lock, NULL);
-	pthread_condattr_init(&attributes);
-	pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
-	pthread_cond_init(&thread->change, &attributes);
-	pthread_condattr_destroy(&attributes);
+	clock_cond_init(&thread->change);
 	return thread;
 }
 
 static int wait_for_open(struct window_thread *thread, uint64_t limit_ns, struct error *error)
 {
-	const uint64_t until_ns = now_ns() + limit_ns;
-	const struct timespec until = {(time_t)(until_ns / SECOND), (long)(until_ns % SECOND)};
+	const uint64_t until_ns = clock_monotonic_ns() + limit_ns;
 	pthread_mutex_lock(&thread->lock);
-	while (!thread->opened && pthread_cond_timedwait(&thread->change, &thread->lock, &until) != ETIMEDOUT)
+	while (!thread->opened && clock_cond_wait(&thread->change, &thread->lock, until_ns))
 		;
 	const int result = thread->opened ? thread->result : -ETIMEDOUT;
 	if (thread->opened)
@@ -205,7 +193,7 @@ void window_thread_mute(struct window_thread *thread)
 
 uint64_t window_thread_busy_ns(const struct window_thread *thread)
 {
-	const uint64_t since_ns = atomic_load(&thread->busy_since_ns), now = now_ns();
+	const uint64_t since_ns = atomic_load(&thread->busy_since_ns), now = clock_monotonic_ns();
 	return since_ns && now > since_ns ? now - since_ns : 0;
 }
 
