@@ -83,7 +83,7 @@ static json_t *changeable_json(const struct settings *settings)
 {
 	json_t *object = json_object();
 	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
+		char value[OPTION_VALUE_BYTES];
 		if (live_effect_of(row) != LIVE_NEXT_FRAME)
 			continue;
 		settings_get(settings, row->name, value, sizeof(value));

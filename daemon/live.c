@@ -108,22 +108,6 @@ json_t *live_origin_json(const struct live *live, const struct option_row *row)
 
 /* ---- changes ---- */
 
-static bool differ(const struct settings *a, const struct settings *b, const struct option_row *row)
-{
-	char before[1024], after[1024];
-	settings_get(a, row->name, before, sizeof(before));
-	settings_get(b, row->name, after, sizeof(after));
-	return strcmp(before, after) != 0;
-}
-
-static void copy(struct settings *to, const struct settings *from, const struct option_row *row)
-{
-	char value[1024];
-	struct error error;
-	settings_get(from, row->name, value, sizeof(value));
-	settings_set(to, row->name, value, &error);
-}
-
 /* Where the setting comes from now. */
 static const struct settings *source_of(const struct live *live, const struct option_row *row)
 {
@@ -139,14 +123,14 @@ static void compute(const struct live *live, struct settings *fresh)
 {
 	*fresh = *live->settings;
 	for (const struct option_row *row = option_table(); row->name; row++)
-		copy(fresh, source_of(live, row), row);
+		settings_copy(fresh, source_of(live, row), row);
 }
 
 static unsigned count_changes(const struct settings *a, const struct settings *b, bool (*of)(const struct option_row *))
 {
 	unsigned count = 0;
 	for (const struct option_row *row = option_table(); row->name; row++)
-		count += (!of || of(row)) && differ(a, b, row);
+		count += (!of || of(row)) && !settings_agree(a, b, row);
 	return count;
 }
 
@@ -158,8 +142,8 @@ static bool is_of_frames(const struct option_row *row)
 static void tell_changes(const struct live *live, const struct settings *fresh)
 {
 	for (const struct option_row *row = option_table(); row->name; row++) {
-		char before[1024], after[1024];
-		if (!differ(live->settings, fresh, row))
+		char before[OPTION_VALUE_BYTES], after[OPTION_VALUE_BYTES];
+		if (settings_agree(live->settings, fresh, row))
 			continue;
 		settings_get(live->settings, row->name, before, sizeof(before));
 		settings_get(fresh, row->name, after, sizeof(after));
@@ -223,8 +207,8 @@ static int settle(struct live *live, struct error *error)
 static void tell_of_asked(const struct live *live, const struct settings *fresh)
 {
 	for (const struct option_row *row = option_table(); row->name; row++) {
-		char before[1024], after[1024];
-		if (!live->is_asked[row - option_table()] || !differ(&live->base, fresh, row))
+		char before[OPTION_VALUE_BYTES], after[OPTION_VALUE_BYTES];
+		if (!live->is_asked[row - option_table()] || settings_agree(&live->base, fresh, row))
 			continue;
 		settings_get(live->settings, row->name, before, sizeof(before));
 		settings_get(fresh, row->name, after, sizeof(after));
@@ -239,7 +223,7 @@ static void take_rows(struct live *live, const struct settings *from, const stru
 	for (const struct option_row *row = option_table(); row->name; row++) {
 		if (has_owner(row) != owned)
 			continue;
-		copy(&live->base, from, row);
+		settings_copy(&live->base, from, row);
 		live->origins[row - option_table()] = origins[row - option_table()];
 	}
 }
@@ -369,20 +353,18 @@ static int change(struct live *live, const char *text, bool owner,
 				  int (*one)(struct wish *wish, char *text, struct error *error), struct error *error)
 {
 	struct wish wish = {.asked = live->asked, .owner = owner};
-	char words[2048], *rest = words;
+	char *words = strdup(text), *rest = words;
 	int result = 0;
+	if (!words)
+		return error_set(error, -ENOMEM, "out of memory");
 	memcpy(wish.is_asked, live->is_asked, sizeof(wish.is_asked));
-	if (strlen(text) >= sizeof(words))
-		return error_set(error, -EINVAL, "longer than %zu bytes", sizeof(words) - 1);
-	memcpy(words, text, strlen(text) + 1);
 	char *word = next_word(&rest);
 	if (!word)
-		return error_set(error, -EINVAL, one == set_one ? "set: what? NAME=VALUE" : "unset: what? NAME");
+		result = error_set(error, -EINVAL, one == set_one ? "set: what? NAME=VALUE" : "unset: what? NAME");
 	for (; word && result == 0; word = next_word(&rest))
 		result = one(&wish, word, error);
-	if (result < 0)
-		return result;
-	return take_wish(live, &wish, error);
+	free(words);
+	return result < 0 ? result : take_wish(live, &wish, error);
 }
 
 int live_set(struct live *live, const char *text, bool owner, struct error *error)

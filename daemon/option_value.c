@@ -22,6 +22,26 @@ static const void *const_field_of(const struct settings *settings, const struct 
 	return (const char *)settings + row->offset;
 }
 
+size_t option_value_size(const struct option_row *row)
+{
+	switch (row->type) {
+	case OPTION_TEXT:
+		return row->size;
+	case OPTION_FLAG:
+		return sizeof(bool);
+	case OPTION_NUMBER:
+	case OPTION_CHOICE:
+		return sizeof(uint32_t);
+	case OPTION_REAL:
+		return sizeof(double);
+	case OPTION_RATE:
+		return 2 * sizeof(uint64_t);
+	case OPTION_SIZE:
+		return 2 * sizeof(uint32_t);
+	}
+	return 0;
+}
+
 /* ---- values from text ---- */
 
 static int parse_flag(const struct option_row *row, const char *text, bool *value, struct error *error)
@@ -72,7 +92,7 @@ static int parse_real(const struct option_row *row, const char *text, double *va
 		return error_set(error, -EINVAL, "gamma: %.64s is neither 0 (sRGB) nor 1 to 5", text);
 	if (row->offset == FIELD(snap_threshold) && number * 4.0 != floor(number * 4.0))
 		return error_set(error, -EINVAL, "snap-threshold: %.64s is not a multiple of 0.25", text);
-	*value = number;
+	*value = number + 0.0; /* -0 is 0 */
 	return 0;
 }
 
@@ -244,6 +264,16 @@ static void print_size(const uint32_t size_px[2], char *value, size_t size)
 		snprintf(value, size, "%" PRIu32 "x%" PRIu32, size_px[0], size_px[1]);
 }
 
+/* As short as it can be read again. */
+static void print_real(double number, char *value, size_t size)
+{
+	for (int digits = 10; digits <= 17; digits++) {
+		snprintf(value, size, "%.*g", digits, number);
+		if (strtod(value, NULL) == number)
+			return;
+	}
+}
+
 void option_value_print(const struct settings *settings, const struct option_row *row, char *value, size_t size)
 {
 	const void *field = const_field_of(settings, row);
@@ -258,7 +288,7 @@ void option_value_print(const struct settings *settings, const struct option_row
 		snprintf(value, size, "%" PRIu32, *(const uint32_t *)field);
 		break;
 	case OPTION_REAL:
-		snprintf(value, size, "%.10g", *(const double *)field);
+		print_real(*(const double *)field, value, size);
 		break;
 	case OPTION_CHOICE:
 		snprintf(value, size, "%s", row->choices[*(const uint32_t *)field]);

@@ -10,6 +10,9 @@
 /* Sets the row's field. 0 or -EINVAL with a sentence that names the setting and the value. */
 int option_value_set(struct settings *settings, const struct option_row *row, const char *value, struct error *error);
 
+/* Bytes of the row's field; equal values are equal bytes. */
+size_t option_value_size(const struct option_row *row);
+
 /* Writes the present value as option_value_set() would take it. Truncates. */
 void option_value_print(const struct settings *settings, const struct option_row *row, char *value, size_t size);
 

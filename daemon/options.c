@@ -301,6 +301,17 @@ int settings_get(const struct settings *settings, const char *name, char *value,
 	return 0;
 }
 
+bool settings_agree(const struct settings *a, const struct settings *b, const struct option_row *row)
+{
+	const char *one = (const char *)a + row->offset, *other = (const char *)b + row->offset;
+	return memcmp(one, other, option_value_size(row)) == 0;
+}
+
+void settings_copy(struct settings *to, const struct settings *from, const struct option_row *row)
+{
+	memcpy((char *)to + row->offset, (const char *)from + row->offset, option_value_size(row));
+}
+
 /* ---- command line ---- */
 
 /* The row that "name" or, for a flag, "no-name" means. */
@@ -382,7 +393,7 @@ void settings_describe_values(const struct option_row *row, char *text, size_t s
 void settings_print(const struct settings *settings, const char *before, const char *equals, FILE *out)
 {
 	for (const struct option_row *row = rows; row->name; row++) {
-		char value[1024];
+		char value[OPTION_VALUE_BYTES];
 		settings_get(settings, row->name, value, sizeof(value));
 		fprintf(out, "%s%s%s%s\n", before, row->name, equals, value);
 	}

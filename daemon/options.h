@@ -103,6 +103,9 @@ struct option_row {
 	const char *help;           /* one or two sentences */
 };
 
+/* A value as text, with its end: no row's is longer, so that none is ever cut. Texts that are longer are refused. */
+#define OPTION_VALUE_BYTES 512u
+
 /* The table has at most so many rows: a set of them is an array of flags, by their place. */
 #define OPTION_ROWS 128u
 
@@ -123,8 +126,17 @@ int settings_set(struct settings *settings, const char *name, const char *value,
 /* The row name nearest to an unknown one (two letters apart at most), NULL if none is near. Static. */
 const char *settings_nearest(const char *name);
 
-/* Writes the present value of a setting as text. -ENOENT for an unknown name. */
+/*
+ * Writes the present value of a setting as text, which settings_set() takes for the same; OPTION_VALUE_BYTES hold it.
+ * -ENOENT for an unknown name.
+ */
 int settings_get(const struct settings *settings, const char *name, char *value, size_t size);
+
+/* Have both the same value? */
+bool settings_agree(const struct settings *a, const struct settings *b, const struct option_row *row);
+
+/* Takes this one over as it is. */
+void settings_copy(struct settings *to, const struct settings *from, const struct option_row *row);
 
 /* What may be written, for a person: "yes or no", "4 to 64 px". Truncates. */
 void settings_describe_values(const struct option_row *row, char *text, size_t size);

@@ -205,16 +205,14 @@ void render_set_view(struct render *render, uint32_t switches)
 /* What has changed, for the person who looks. */
 static void say_changes(struct render *render, const struct settings *settings)
 {
-	char message[96] = "", before[1024], after[1024];
+	char message[96] = "", value[OPTION_VALUE_BYTES];
 	for (const struct option_row *row = option_table(); row->name; row++) {
 		const size_t used = strlen(message);
 		/* Of files and lines nothing is written over the picture, which may be what is recorded. */
-		if (!option_is_of_picture(row))
+		if (!option_is_of_picture(row) || settings_agree(render->settings, settings, row))
 			continue;
-		settings_get(render->settings, row->name, before, sizeof(before));
-		settings_get(settings, row->name, after, sizeof(after));
-		if (strcmp(before, after) != 0)
-			snprintf(message + used, sizeof(message) - used, "%s%s: %.32s", used ? "\n" : "", row->name, after);
+		settings_get(settings, row->name, value, sizeof(value));
+		snprintf(message + used, sizeof(message) - used, "%s%s: %.32s", used ? "\n" : "", row->name, value);
 	}
 	if (*message)
 		view_say(&render->view, message, clock_now(render->clock));

@@ -137,15 +137,13 @@ static int send_text(struct control *control, const char *text, int fd, struct e
 		.header = {PURSUIT_MESSAGE_CONTROL, (uint32_t)(sizeof(head) + length), ++control->serial, 0},
 		.text_bytes = (uint32_t)length,
 	};
-	char copy[2048];
 	union {
 		struct cmsghdr align;
 		char bytes[CMSG_SPACE(sizeof(int))];
 	} rights = {.bytes = {0}};
-	if (length > sizeof(copy))
-		return error_set(error, -E2BIG, "a request has at most %zu bytes", sizeof(copy));
-	memcpy(copy, text, length);
-	struct iovec parts[2] = {{&head, sizeof(head)}, {copy, length}};
+	if (length > PURSUIT_WIRE_MAX_PACKET - sizeof(head))
+		return error_set(error, -E2BIG, "a request has at most %zu bytes", PURSUIT_WIRE_MAX_PACKET - sizeof(head));
+	struct iovec parts[2] = {{&head, sizeof(head)}, {(void *)(uintptr_t)text, length}};
 	struct msghdr message = {.msg_iov = parts, .msg_iovlen = 2};
 	if (fd >= 0) {
 		message.msg_control = rights.bytes;

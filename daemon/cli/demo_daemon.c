@@ -15,12 +15,13 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/options.h"
 #include "interrupt.h"
 
 #define START_LIMIT_MS 20000
 #define STOP_LIMIT_MS 5000
 #define STEP_MS 20
-#define MAX_ARGUMENTS 64
+#define MAX_ARGUMENTS OPTION_ROWS
 #define PATH_SIZE 1024
 
 static void wait_step(void)

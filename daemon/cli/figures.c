@@ -209,7 +209,7 @@ json_t *figures_settings_json(const struct settings *settings)
 {
 	json_t *object = json_object();
 	for (const struct option_row *row = option_table(); object && row->name; row++) {
-		char value[sizeof(settings->record)];
+		char value[OPTION_VALUE_BYTES];
 		if (row->group == OPTION_ENGINE && settings_get(settings, row->name, value, sizeof(value)) >= 0)
 			json_object_set_new(object, row->name, json_string(value));
 	}

@@ -22,7 +22,6 @@
 #include "verbs.h"
 
 #define VERB "demo"
-#define MAX_PASSED 64u
 /* The burst that is scored: one second, less if the frames are large. */
 #define BURST_SECONDS 1.0
 #define BURST_LEAST_SECONDS 0.25
@@ -139,11 +138,11 @@ static int make_source(struct demo *demo, struct error *error)
 
 static int start_daemon(struct demo *demo, struct error *error)
 {
-	char texts[MAX_PASSED][640];
-	const char *passed[MAX_PASSED + 1] = {NULL};
+	char texts[OPTION_ROWS][OPTION_VALUE_BYTES + 64];
+	const char *passed[OPTION_ROWS + 1] = {NULL};
 	unsigned count = 0;
-	for (const struct option_row *row = option_table(); row->name && count < MAX_PASSED; row++) {
-		char value[560];
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char value[OPTION_VALUE_BYTES];
 		if (row->group == OPTION_DAEMON || settings_get(&demo->options.settings, row->name, value, sizeof(value)) < 0)
 			continue;
 		snprintf(texts[count], sizeof(texts[count]), "--%s=%s", row->name, value);

@@ -70,7 +70,7 @@ static json_t *profile_json(const struct profile *profile)
 {
 	json_t *object = json_object();
 	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
+		char value[OPTION_VALUE_BYTES];
 		if (!profile->has[row - option_table()])
 			continue;
 		settings_get(&profile->values, row->name, value, sizeof(value));
@@ -96,7 +96,7 @@ static int list_json(const struct profile_file *file)
 static void print_settings(const struct profile *profile, const char *indent)
 {
 	for (const struct option_row *row = option_table(); row->name; row++) {
-		char value[1024];
+		char value[OPTION_VALUE_BYTES];
 		if (!profile->has[row - option_table()])
 			continue;
 		settings_get(&profile->values, row->name, value, sizeof(value));

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
+#include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "args.h"
@@ -11,24 +13,29 @@
 
 #define VERB "set"
 #define CHANGES 32u
-#define REQUEST_BYTES 2048u
 
-/* What the daemon is asked: words, in which spaces are escaped; a client's name is the rest as it is. False: it does
- * not fit. */
-static bool write_request(char *request, size_t size, const char *what, const char *const *changes, unsigned count)
+/*
+ * What the daemon is asked: words, in which spaces are escaped; a client's name is the rest as it is. To be freed;
+ * NULL: out of memory.
+ */
+static char *write_request(const char *what, const char *const *changes, unsigned count)
 {
 	const bool whole = strncmp(changes[0], "focus=", 6) == 0;
-	size_t used = (size_t)snprintf(request, size, "%s", what);
-	for (unsigned i = 0; i < count && used + 1 < size; i++) {
-		request[used++] = ' ';
-		for (const char *c = changes[i]; *c && used + 2 < size; c++) {
-			if (!whole && (*c == ' ' || *c == '\\'))
-				request[used++] = '\\';
-			request[used++] = *c;
-		}
+	char *request = NULL;
+	size_t size;
+	FILE *out = open_memstream(&request, &size);
+	if (!out)
+		return NULL;
+	fputs(what, out);
+	for (unsigned i = 0; i < count; i++) {
+		fputc(' ', out);
+		for (const char *c = changes[i]; *c; c++)
+			fprintf(out, "%s%c", !whole && (*c == ' ' || *c == '\\') ? "\\" : "", *c);
 	}
-	request[used < size ? used : size - 1] = 0;
-	return used + 2 < size;
+	if (fclose(out) == 0)
+		return request;
+	free(request);
+	return NULL;
 }
 
 /* The settings that were named, as they are now. focus is none of them. */
@@ -53,7 +60,6 @@ int verb_set(int argc, char **argv)
 	bool as_json = false, undo = false;
 	const char *socket = NULL, *changes[CHANGES] = {NULL};
 	unsigned count = 0;
-	char request[REQUEST_BYTES];
 	const struct arg_row rows[] = {
 		{"undo", ARG_FLAG, &undo, 0, 0, NULL, NULL,
 		 "take back what was set: NAMEs alone; they are again as the configuration says"},
@@ -92,12 +98,13 @@ int verb_set(int argc, char **argv)
 			return args_wrong(
 				VERB, undo ? "%s: to take a setting back its NAME is enough" : "%s is not of the form NAME=VALUE",
 				changes[i]);
-	if (!write_request(request, sizeof(request), undo ? "unset" : "set", changes, count))
-		return args_wrong(VERB, "more than %zu bytes of settings at once", sizeof(request) - sizeof("set "));
 	if (control_open(&control, socket, &error) < 0)
 		return args_failed(VERB, "%s", error.text);
+	char *request = write_request(undo ? "unset" : "set", changes, count);
 	json_t *now = NULL;
-	int result = control_ask(&control, request, -1, NULL, &error);
+	int result =
+		request ? control_ask(&control, request, -1, NULL, &error) : error_set(&error, -ENOMEM, "out of memory");
+	free(request);
 	if (result == 0 && as_json)
 		result = ask_settings(&control, changes, count, &now, &error);
 	control_close(&control);

@@ -62,6 +62,17 @@ class Settings(common.Case):
         self.assertEqual(self.get("cell"), "16\n")
         self.set("stats=")
 
+    def test_long(self):
+        """As long as they may be, all at once: nothing is cut."""
+        folder = self.path("a" + " " * 60 + "b")
+        os.mkdir(folder)
+        names = ["stats", "record", "tee", "latency-log"]
+        values = [folder + "/" + "./" * ((500 - len(folder)) // 2) + name[:3] + ".csv" for name in names]
+        self.set(*[f"{name}={value}" for name, value in zip(names, values)])
+        for name, value in zip(names, values):
+            self.assertEqual(self.get(name), value + "\n")
+        self.assertIn("stats: ", self.set("stats=" + "x" * 512, status=1))
+
     def test_get_long(self):
         """Where each value comes from, and what may be set."""
         def origin(name):

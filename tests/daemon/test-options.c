@@ -36,6 +36,57 @@ static void test_table(void)
 	}
 }
 
+/* As long as may be; never cut, and refused if it is longer, with file, line and name. */
+static void test_long_texts(void)
+{
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		char text[OPTION_VALUE_BYTES + 1] = "", value[OPTION_VALUE_BYTES];
+		struct settings settings, other;
+		struct error error = {""};
+		CHECK(row->size <= OPTION_VALUE_BYTES);
+		if (row->type != OPTION_TEXT || strcmp(row->name, "context") == 0)
+			continue;
+		settings_defaults(&settings);
+		memset(text, 'x', row->size - 1);
+		CHECK_INT(settings_set(&settings, row->name, text, &error), 0);
+		CHECK_INT(settings_get(&settings, row->name, value, sizeof(value)), 0);
+		CHECK_STRING(value, text);
+		settings_defaults(&other);
+		CHECK(!settings_agree(&settings, &other, row));
+		settings_copy(&other, &settings, row);
+		CHECK(memcmp(&settings, &other, sizeof(settings)) == 0);
+		text[row->size - 2] = 'y';
+		CHECK_INT(settings_set(&other, row->name, text, &error), 0);
+		CHECK(!settings_agree(&settings, &other, row));
+		text[row->size - 1] = 'x';
+		CHECK_INT(settings_set(&settings, row->name, text, &error), -EINVAL);
+		CHECK(strstr(error.text, row->name) == error.text && strstr(error.text, "is longer than"));
+	}
+}
+
+/* To the last bit: what is compared and copied is not what is printed. */
+static void test_reals(void)
+{
+	static const char *const texts[] = {"600.00000000001", "0x1.2c00000000001p9", "555.5", "1e3"};
+	struct settings settings, again;
+	for (size_t i = 0; i < sizeof(texts) / sizeof(texts[0]); i++) {
+		char value[OPTION_VALUE_BYTES];
+		struct error error = {""};
+		settings_defaults(&settings);
+		settings_defaults(&again);
+		CHECK_INT(settings_set(&settings, "viewing-distance-mm", texts[i], &error), 0);
+		CHECK(!settings_agree(&settings, &again, option_find("viewing-distance-mm")));
+		settings_get(&settings, "viewing-distance-mm", value, sizeof(value));
+		CHECK(i < 2 || strlen(value) <= 5);
+		CHECK_INT(settings_set(&again, "viewing-distance-mm", value, &error), 0);
+		CHECK(memcmp(&settings, &again, sizeof(settings)) == 0);
+	}
+	settings_defaults(&again);
+	settings = again;
+	CHECK_INT(settings_set(&settings, "gamma", "-0", &(struct error){""}), 0);
+	CHECK(settings_agree(&settings, &again, option_find("gamma")));
+}
+
 static void expect(const char *name, const char *value, int result, const char *sentence)
 {
 	struct settings settings;
@@ -197,6 +248,13 @@ static void test_config_errors(void)
 	snprintf(want, sizeof(want), "%s:1: \"cell 16\" is not of the form name = value", path);
 	CHECK_STRING(error.text, want);
 	unlink(path);
+	char text[OPTION_VALUE_BYTES + 16];
+	snprintf(text, sizeof(text), "\ntee = %0*d\n", (int)OPTION_VALUE_BYTES, 0);
+	path = file_with(text);
+	CHECK_INT(load(&settings, path, &error), -EINVAL);
+	snprintf(want, sizeof(want), "%s:2: tee: \"%032d...\" is longer than 511 bytes", path, 0);
+	CHECK_STRING(error.text, want);
+	unlink(path);
 	CHECK_INT(load(&settings, "/nonexistent/pursuit.conf", &error), -ENOENT);
 	CHECK_STRING(error.text, "/nonexistent/pursuit.conf: No such file or directory");
 	CHECK(load(&settings, "/tmp", &error) < 0);
@@ -349,6 +407,8 @@ static void test_help(void)
 int main(void)
 {
 	RUN(test_table);
+	RUN(test_long_texts);
+	RUN(test_reals);
 	RUN(test_refusals);
 	RUN(test_rates);
 	RUN(test_config_round_trip);
