@@ -5,6 +5,7 @@
  */
 
 #include <errno.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "daemon/lab/state.h"
@@ -52,6 +53,12 @@ static void unpark(struct lab *lab)
 
 /* ---- lines ---- */
 
+/* "gpiochip0" of "gpiochip0 (gpio-sim.0)". */
+static void keep_name(char name[CHIP_NAME_BYTES], const char *text)
+{
+	snprintf(name, CHIP_NAME_BYTES, "%.*s", (int)strcspn(text, " "), text);
+}
+
 /* Those that change and are there let go of what they hold, and wait. */
 static void give_lines_up(struct lab *lab)
 {
@@ -62,6 +69,8 @@ static void give_lines_up(struct lab *lab)
 			continue;
 		if (i == STROBE)
 			chip_set(lines->chip, 0);
+		if (i == MARKER)
+			keep_name(lab->prepared.marker_chip, chip_text(lines->chip));
 		chip_close(&lines->chip);
 		lines->retry_ns = UINT64_MAX;
 		lab->prepared.lines[i].early = true;
@@ -215,16 +224,15 @@ static void take_vsync(struct lab *lab, const struct lab_settings *before)
 }
 
 /* While the thread stands. Gives the log of before. */
-static struct latency_log *take_all(struct lab *lab)
+static struct latency_log *take_all(struct lab *lab, const struct lab_settings *before)
 {
-	const struct lab_settings before = lab->settings;
 	struct latency_log *log = NULL;
 	for (unsigned i = 0; i < LAB_LINES; i++)
 		if (lab->prepared.lines[i].other)
 			leave_line(lab, i);
 	lab->settings = lab->prepared.settings;
 	take_lines(lab);
-	take_vsync(lab, &before);
+	take_vsync(lab, before);
 	if (lab->prepared.other_log) {
 		log = lab->latency_log;
 		lab->latency_log = lab->prepared.latency_log;
@@ -234,26 +242,50 @@ static struct latency_log *take_all(struct lab *lab)
 		lab->guard = lab->prepared.guard;
 	}
 	lab_publish_patch(lab);
-	if (before.priority != lab->settings.priority && lab->running)
+	if (before->priority != lab->settings.priority && lab->running)
 		lab_set_priority(lab, lab->thread);
 	return log;
 }
 
+/*
+ * The marker's lines were given up before it was known whether all could be had, and kept their levels for that. Those
+ * that nobody took again get the final one now.
+ */
+static void leave_dropped(const struct lab *lab, const struct lab_settings *before)
+{
+	struct lines dropped = outputs_marker(lab, before);
+	const char *list = before->gpio_line;
+	char name[CHIP_NAME_BYTES];
+	struct error error;
+	if (before->final_level == LAB_FINAL_KEEP)
+		return;
+	dropped.params.chip = lab->prepared.marker_chip;
+	dropped.params.lines = name;
+	dropped.params.levels = before->final_level == LAB_FINAL_HIGH;
+	while (chip_next_line(&list, name) == 1) {
+		struct chip *chip = chip_open(&dropped.params, &error);
+		chip_close(&chip);
+	}
+}
+
 struct latency_log *lab_commit(struct lab *lab)
 {
+	const struct lab_settings before = lab->settings;
 	struct latency_log *log = NULL;
 	if (lab->running && lab_is_wanted(&lab->prepared.settings)) {
 		park(lab);
-		log = take_all(lab);
+		log = take_all(lab, &before);
 		unpark(lab);
+		if (lab->prepared.lines[MARKER].early)
+			leave_dropped(lab, &before);
 		atomic_store(&lab->active, true);
 	} else if (lab->running) {
 		lab_stop_thread(lab);
 		lab->prepared.other_log = true;
 		lab->prepared.other_guard = true;
-		log = take_all(lab);
+		log = take_all(lab, &before);
 	} else {
-		take_all(lab);
+		take_all(lab, &before);
 	}
 	lab->prepared = (struct lab_prepared){.period_ns = 0.0};
 	return log;

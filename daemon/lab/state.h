@@ -47,9 +47,10 @@ struct lab_prepared {
 	double period_ns; /* 0: as before */
 	struct {
 		bool other;        /* than there is */
-		bool early;        /* swapped already; `chip` is none, `before` tells how to go back */
+		bool early;        /* let go of already, to be taken back or exchanged */
 		struct chip *chip; /* NULL: none */
 	} lines[LAB_LINES];
+	char marker_chip[CHIP_NAME_BYTES]; /* which the marker's lines that were let go of were on */
 	bool other_log, other_guard, started;
 	struct latency_log *latency_log;
 	struct guard guard;

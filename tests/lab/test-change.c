@@ -51,8 +51,11 @@ static int take(struct chip *chip, const struct chip_params *params, struct erro
 			return error_set(error, -EBUSY, "%s: %s is busy", params->option, name);
 		chip->lines[chip->count++] = (uint32_t)line;
 	}
-	for (uint32_t i = 0; i < chip->count; i++)
+	for (uint32_t i = 0; i < chip->count; i++) {
 		board.taken[chip->lines[i]] = true;
+		if (!params->input)
+			board.level[chip->lines[i]] = params->levels >> i & 1;
+	}
 	return 0;
 }
 
@@ -132,6 +135,14 @@ static bool is_taken(unsigned line)
 	const bool taken = board.taken[line];
 	pthread_mutex_unlock(&board.lock);
 	return taken;
+}
+
+static bool is_high(unsigned line)
+{
+	pthread_mutex_lock(&board.lock);
+	const bool level = board.level[line];
+	pthread_mutex_unlock(&board.lock);
+	return level;
 }
 
 /* ---- the lab ---- */
@@ -268,6 +279,24 @@ static void test_other_lines(void)
 	CHECK(is_taken(1) && !is_taken(2));
 }
 
+/* A line that is left has its final level, whether or not others had to be let go for the change; the others wait. */
+static void test_levels_that_are_left(void)
+{
+	change("gpio-line=1,2,3 gpio-pattern=counter gpio-final=high");
+	CHECK(!is_high(1) && !is_high(2) && !is_high(3));
+	change("gpio-line=3,4,5");
+	CHECK(is_high(1) && is_high(2) && !is_high(3) && !is_high(4));
+	refuse("gpio-line=3,9,4", "there is no board 9");
+	CHECK(!is_high(3) && !is_high(5));
+	change("gpio-final=keep");
+	change("gpio-line=4,6,7");
+	CHECK(!is_high(3) && !is_high(5));
+	change("gpio-line=1 gpio-pattern=toggle gpio-final=low");
+	change("gpio-line=2");
+	CHECK(!is_high(1));
+	change("gpio-line=1");
+}
+
 static void test_refusals(void)
 {
 	const json_int_t rows = count("rows"), edges = count("edges");
@@ -329,6 +358,7 @@ int main(void)
 	RUN(test_off_and_on);
 	RUN(test_line_that_stays);
 	RUN(test_other_lines);
+	RUN(test_levels_that_are_left);
 	RUN(test_refusals);
 	RUN(test_logs);
 	RUN(test_strobe);
