@@ -12,6 +12,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "daemon/descriptors.h"
+
 #define TRIES 2000
 #define TRY_NS 1000000L
 
@@ -41,9 +43,9 @@ static void watch(int fd, const struct chip_params *params)
 	signal(SIGTERM, SIG_IGN);
 	signal(SIGHUP, SIG_IGN);
 	/* Nothing of the daemon's is kept alive by it: pipes of a parent that waits for their end. */
-	for (int other = 0; other < 1024; other++)
-		if (other != fd && other != STDERR_FILENO)
-			close(other);
+	fd = dup2(fd, STDIN_FILENO);
+	close(STDOUT_FILENO);
+	descriptors_close(STDERR_FILENO + 1, DESCRIPTORS_ALL);
 	do
 		got = read(fd, &byte, 1);
 	while (got < 0 && errno == EINTR);

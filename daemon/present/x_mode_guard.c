@@ -15,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "daemon/descriptors.h"
 #include "daemon/present/x_mode.h"
 
 #define ARGUMENT "--put-mode-back"
@@ -94,8 +95,7 @@ static void leave_daemon(void)
 	signal(SIGHUP, SIG_IGN);
 	dup2(null, STDOUT_FILENO);
 	dup2(null, STDERR_FILENO);
-	for (int fd = STDERR_FILENO + 1; fd < 1024; fd++)
-		close(fd);
+	descriptors_close(STDERR_FILENO + 1, DESCRIPTORS_ALL);
 }
 
 static void put_back(char **argv)
