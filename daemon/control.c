@@ -252,6 +252,14 @@ static void on_recorded(void *data, uint64_t client_id, uint32_t serial, int res
 		server_reply(control->server, client_id, serial, result, text);
 }
 
+/* A recording that was ended by hand is not asked for any more: the same file may be named once more. */
+static void empty_setting(struct control *control)
+{
+	struct error error = {""};
+	if (*control->params.settings->record && live_set(control->params.live, "record=", true, &error) < 0)
+		log_warning(control->params.log, "record-stop: the setting record stays as it is: %s", error.text);
+}
+
 static void on_record_stop(struct control *control, const struct request *request)
 {
 	struct error error = {""};
@@ -262,6 +270,8 @@ static void on_record_stop(struct control *control, const struct request *reques
 	const int result = capture_end(control->capture, on_recorded, control, request->client_id, request->serial, &error);
 	if (result < 0)
 		reply(control, request, result, error.text);
+	else
+		empty_setting(control);
 }
 
 /* "key q", "key escape": as if it had been pressed in the window. */

@@ -17,8 +17,10 @@
  *                           refused where no option of the lab is set
  *   record                  with one fd, a regular file open for writing, which it
  *                           replaces: records the frames received from now on
- *   record-stop             ends the recording; answered when it is on disk:
- *                           {frames, dropped, bytes, error}
+ *   record-stop             ends the recording, and if it was that of the setting
+ *                           `record` that is empty then, as if it had been set;
+ *                           answered when it is on disk: {frames, dropped, bytes,
+ *                           error}
  *   set NAME=VALUE ...      settings by name, all or none of them (live.h), with a
  *                           backslash before a space within a value; those of
  *                           the picture from the next real frame on; others only

@@ -214,6 +214,30 @@ static void test_recordings(void)
 	CHECK_INT(sum_logged("recording ended: "), published - before - 1);
 }
 
+/* One that a client ends: nothing is asked for any more, so the same file may be asked for again. */
+static void test_recording_that_is_stopped(void)
+{
+	const unsigned ended = count_logged("recording ended: ");
+	const uint64_t frames = sum_logged("recording ended: ");
+	char change[256], line[300];
+	snprintf(change, sizeof(change), "record=%s", path_of("again"));
+	for (unsigned i = 1; i <= 2; i++) {
+		must_set(change);
+		publish();
+		check_reports();
+		CHECK_INT(raw_control(fd, "record-stop", -1, &reply), 0);
+		CHECK(strstr(answer(), "\"frames\":1,") != NULL);
+		snprintf(line, sizeof(line), "record is empty now, was %s", path_of("again"));
+		wait_for_count(line, i);
+	}
+	CHECK_INT(raw_control(fd, "record-stop", -1, &reply), EINVAL);
+	CHECK_INT(count_logged("recording ended: "), ended + 2);
+	CHECK_INT(sum_logged("recording ended: "), frames + 2);
+	CHECK_INT(access(path_of("again.1"), F_OK), 0);
+	CHECK_INT(raw_control(fd, "unset record", -1, &reply), 0);
+	check_account();
+}
+
 /* How often this flip is in the times of the files. */
 static unsigned count_flip(const char *name, int files, uint64_t flip_ns)
 {
@@ -525,6 +549,7 @@ int main(int argc, char **argv)
 	RUN(test_each);
 	RUN(test_engine);
 	RUN(test_recordings);
+	RUN(test_recording_that_is_stopped);
 	RUN(test_tees);
 	RUN(test_tees_that_go_at_once);
 	RUN(test_latency_logs);
