@@ -22,7 +22,7 @@
 /* Unless the CPU is to draw on it, or to look at it. */
 static bool stays_in_gl(const struct render *render)
 {
-	return engine_get_info(render->engine)->brought && !render->through_memory && !render->tee &&
+	return engine_get_info(render->engine)->brought && !render->through_memory && !render->tees.now &&
 		   !lab_draws(render->lab) && !view_draws(&render->view, clock_now(render->clock));
 }
 
@@ -131,8 +131,8 @@ int draw_queue(struct render *render, struct presenter_image *image, uint64_t vb
 		render->serial = serial;
 	if (result == 0 || result == -EBUSY)
 		render_expect_flips(render);
-	if (result == 0 && render->tee)
-		tee_add(render->tee, image, render->group, serial);
+	if (result == 0 && render->tees.now)
+		tee_add(render->tees.now, image, render->group, serial);
 	return result;
 }
 
@@ -426,7 +426,7 @@ void draw_empty(struct render *render, uint64_t vblank)
 	if (render->begun)
 		engine_get_size(render->engine, &width, &height);
 	/* A file of what is shown has the size of the first picture. */
-	if ((render->tee && !render->begun) || impl->acquire(render->presenter, width, height, &image) < 0)
+	if ((render->tees.now && !render->begun) || impl->acquire(render->presenter, width, height, &image) < 0)
 		return;
 	image.holds = 0;
 	overlay_blacken(&(struct overlay){image.data, image.stride, image.width, image.height});
@@ -491,6 +491,6 @@ void draw_plain(struct render *render, uint64_t vblank)
 	lab_mark_picture(render->lab, &image, picture.serial, render->real_vblank, POINTS_STANDBY);
 	render->presenter->impl->set_standby(render->presenter, &image, render->group, picture.serial);
 	add_cost(render, &render->plain_cost, start_ns);
-	if (render->tee)
-		tee_add(render->tee, &image, render->group, picture.serial);
+	if (render->tees.now)
+		tee_add(render->tees.now, &image, render->group, picture.serial);
 }

@@ -33,9 +33,10 @@ int render_start(struct render *render, struct error *error)
 		.path = settings->tee,
 		.log = render->log,
 	};
+	render->tees = (struct tees){.close = render->owner.close_tee, .data = render->owner.data, .log = render->log};
 	if (*settings->tee) {
-		render->tee = tee_create(&params, error);
-		if (!render->tee)
+		render->tees.now = tee_create(&params, error);
+		if (!render->tees.now)
 			return -EIO;
 	}
 	return draw_make_engine(render, error);
@@ -43,8 +44,7 @@ int render_start(struct render *render, struct error *error)
 
 void render_finish(struct render *render)
 {
-	tee_destroy(&render->last_tee.tee);
-	tee_destroy(&render->tee);
+	tees_finish(&render->tees);
 	engine_destroy(&render->other_engine);
 	engine_destroy(&render->engine);
 	draw_forget_kept(render);
@@ -52,35 +52,12 @@ void render_finish(struct render *render)
 	showing_finish(&render->showing);
 }
 
-/* What it was given is over. */
-static void close_last_tee(struct render *render)
-{
-	if (render->last_tee.tee)
-		render->owner.close_tee(render->owner.data, render->last_tee.tee);
-	render->last_tee.tee = NULL;
-}
-
 void render_set_tee(struct render *render, struct tee *tee)
 {
-	close_last_tee(render);
-	render->last_tee.tee = render->tee;
-	render->last_tee.group = render->group;
-	render->last_tee.before = render->last_tee.serial;
-	render->last_tee.serial = render->serial;
-	render->tee = tee;
+	tees_follow(&render->tees, tee, render->group, render->serial);
 	render->redraw |= tee != NULL; /* a picture that stays is its first one */
 	if (render->paused)
-		close_last_tee(render);
-}
-
-static void tell_tees(struct render *render, const struct presenter_flip *flip)
-{
-	if (flip->group > render->last_tee.group)
-		close_last_tee(render);
-	/* What was drawn before a tee came is not its. */
-	struct tee *tee = flip->serial <= render->last_tee.serial ? render->last_tee.tee : render->tee;
-	if (tee && flip->serial > render->last_tee.before)
-		tee_flip(tee, flip, &render->grid);
+		tees_rest(&render->tees);
 }
 
 static void close_all_frames(struct render *render)
@@ -270,7 +247,7 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 		return;
 	render->unanswered.pictures = 0;
 	showing_flip(&render->showing, flip);
-	tell_tees(render, flip);
+	tees_flip(&render->tees, flip, &render->grid);
 	if (lab_is_active(render->lab))
 		tell_lab(render, flip);
 }
@@ -384,7 +361,7 @@ static void fall_asleep(struct render *render)
 	render->presenter->impl->pause(render->presenter);
 	render->showing.last_target_ns = 0;
 	render->paused = true;
-	close_last_tee(render);
+	tees_rest(&render->tees);
 }
 
 /* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */

@@ -27,7 +27,7 @@
 #include "daemon/present/pacer.h"
 #include "daemon/present/presenter.h"
 #include "daemon/showing.h"
-#include "daemon/tee.h"
+#include "daemon/tees.h"
 #include "daemon/view.h"
 
 #define RENDER_NEVER UINT64_MAX
@@ -68,12 +68,7 @@ struct render {
 	struct showing showing;
 	struct lab *lab; /* NULL: none */
 	struct view view;
-	struct tee *tee; /* NULL: none */
-	struct {
-		struct tee *tee;        /* the one before, which has pictures that are not over yet; NULL: none */
-		uint64_t group, serial; /* of its last picture */
-		uint64_t before;        /* serial of the last picture that was drawn before it came */
-	} last_tee;
+	struct tees tees;
 	bool settings_changed; /* the engine does not know yet */
 	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
 	bool show_held;        /* `frame`, which the stream still lends, is due once more, unless a newer one comes first */
