@@ -51,8 +51,11 @@ struct stream {
 	int wake_fd;                             /* eventfd; the client writes, nobody reads */
 	_Atomic uint64_t wake_ns;                /* when main saw the last wake-up */
 	atomic_bool ended;                       /* nothing is taken any more */
-	bool is_broken;                          /* main is to be told that it is to be ended, and why; the output's */
-	struct refusal broken;
+	struct stream_complaint {
+		bool due;  /* main is to be told, and its client */
+		bool ends; /* the stream is to be ended for it */
+		struct refusal refusal;
+	} complaint; /* the newest; the output's */
 	struct stream_counters counters;
 
 	struct pursuit_shm_control *control;

@@ -5,6 +5,7 @@
 #include "daemon/output_state.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,32 +28,15 @@ static void wake_main(const struct output *output)
 		log_error(output->params.log, "eventfd: %s", strerror(errno));
 }
 
-void output_push_event(struct output *output, const struct output_event *event)
+void output_complain(struct output *output, enum output_event_kind kind, struct stream *stream,
+					 const struct refusal *refusal)
 {
+	const bool ends = kind == OUTPUT_STREAM_BROKEN;
 	pthread_mutex_lock(&output->lock);
-	if (output->event_count < OUTPUT_EVENTS)
-		output->events[output->event_count++] = *event;
+	if (ends || !stream->complaint.ends)
+		stream->complaint = (struct stream_complaint){true, ends, *refusal};
 	pthread_mutex_unlock(&output->lock);
 	wake_main(output);
-}
-
-void output_break_stream(struct output *output, struct stream *stream, const struct refusal *refusal)
-{
-	pthread_mutex_lock(&output->lock);
-	stream->broken = *refusal;
-	stream->is_broken = true;
-	pthread_mutex_unlock(&output->lock);
-	wake_main(output);
-}
-
-struct output_event output_stream_event(enum output_event_kind kind, const struct stream *stream,
-										const struct refusal *refusal)
-{
-	return (struct output_event){.kind = kind,
-								 .client_id = stream->client_id,
-								 .stream_id = stream->stream_id,
-								 .stream = stream->number,
-								 .refusal = *refusal};
 }
 
 /* ---- called by the display ---- */
@@ -241,7 +225,13 @@ void output_toggle_fullscreen(struct output *output)
 
 void output_press_key(struct output *output, const struct presenter_key *key)
 {
-	output_push_event(output, &(struct output_event){.kind = OUTPUT_KEY, .key = *key});
+	pthread_mutex_lock(&output->lock);
+	if (output->key_count < OUTPUT_KEYS)
+		output->keys[output->key_count++] = *key;
+	else
+		output->lost_keys++;
+	pthread_mutex_unlock(&output->lock);
+	wake_main(output);
 }
 
 int output_event_fd(const struct output *output)
@@ -250,25 +240,29 @@ int output_event_fd(const struct output *output)
 }
 
 /* With the lock. */
-static bool take_event(struct output *output, struct output_event *event)
+static bool take_key(struct output *output, struct output_event *event)
 {
-	if (output->event_count == 0)
+	if (output->key_count == 0)
 		return false;
-	*event = output->events[0];
-	output->event_count--;
-	memmove(&output->events[0], &output->events[1], output->event_count * sizeof(output->events[0]));
+	*event = (struct output_event){.kind = OUTPUT_KEY, .key = output->keys[0]};
+	output->key_count--;
+	memmove(&output->keys[0], &output->keys[1], output->key_count * sizeof(output->keys[0]));
 	return true;
 }
 
-/* With the lock: it is kept with the stream, so that it needs no room and goes with it. */
-static bool take_broken(struct output *output, struct output_event *event)
+/* With the lock. */
+static bool take_complaint(struct output *output, struct output_event *event)
 {
 	for (uint32_t i = 0; i < output->stream_count; i++) {
 		struct stream *stream = output->streams[i];
-		if (!stream->is_broken)
+		if (!stream->complaint.due)
 			continue;
-		stream->is_broken = false;
-		*event = output_stream_event(OUTPUT_STREAM_BROKEN, stream, &stream->broken);
+		stream->complaint.due = false;
+		*event = (struct output_event){.kind = stream->complaint.ends ? OUTPUT_STREAM_BROKEN : OUTPUT_FRAME_REFUSED,
+									   .client_id = stream->client_id,
+									   .stream_id = stream->stream_id,
+									   .stream = stream->number,
+									   .refusal = stream->complaint.refusal};
 		return true;
 	}
 	return false;
@@ -278,11 +272,16 @@ bool output_next_event(struct output *output, struct output_event *event)
 {
 	uint64_t count;
 	pthread_mutex_lock(&output->lock);
-	const bool any = take_event(output, event) || take_broken(output, event);
+	const bool any = take_key(output, event) || take_complaint(output, event);
+	const uint32_t lost_keys = output->lost_keys;
+	output->lost_keys = 0;
 	if (!any && read(output->event_fd, &count, sizeof(count)) < 0) {
 		/* Nothing to clear. */
 	}
 	pthread_mutex_unlock(&output->lock);
+	if (lost_keys > 0)
+		log_warning(output->params.log, "%" PRIu32 " keys were pressed while %u waited, and are lost", lost_keys,
+					OUTPUT_KEYS);
 	return any;
 }
 

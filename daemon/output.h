@@ -31,13 +31,13 @@
 #include "daemon/view.h"
 
 #define OUTPUT_STREAMS 64u
-#define OUTPUT_EVENTS 64u
+#define OUTPUT_KEYS 64u
 
 /* What the render thread tells main. */
 enum output_event_kind {
-	OUTPUT_FRAME_REFUSED, /* the stream goes on */
-	OUTPUT_STREAM_BROKEN, /* nothing more is taken from it: end it. Always told, whatever else there is to tell */
-	OUTPUT_KEY,           /* a key was pressed in the presenter's window */
+	OUTPUT_FRAME_REFUSED, /* the stream goes on. Of a stream the newest, which is always told, but few a second */
+	OUTPUT_STREAM_BROKEN, /* nothing more is taken from it: end it. Always told */
+	OUTPUT_KEY, /* a key was pressed in the presenter's window; with OUTPUT_KEYS waiting it is lost, and said so */
 };
 
 struct output_event {

@@ -51,8 +51,8 @@ struct output {
 		struct presenter_flip flip;
 	} flips[OUTPUT_FLIPS];
 	uint32_t flip_count;
-	struct output_event events[OUTPUT_EVENTS]; /* for main */
-	uint32_t event_count;
+	struct presenter_key keys[OUTPUT_KEYS]; /* for main */
+	uint32_t key_count, lost_keys;
 	struct output_info info;
 
 	pthread_mutex_t stats_lock;
@@ -87,12 +87,12 @@ void output_wish_settings(struct output *output, const struct settings *settings
 /* Any thread: the tee (NULL: none), an output's, is to be closed without anybody waiting for it. */
 void output_close_tee(void *output, struct tee *tee);
 
-/* Any thread: an event for main. Lost if too many wait. */
-void output_push_event(struct output *output, const struct output_event *event);
-/* The render thread: main is to end this stream. Never lost. */
-void output_break_stream(struct output *output, struct stream *stream, const struct refusal *refusal);
-struct output_event output_stream_event(enum output_event_kind kind, const struct stream *stream,
-										const struct refusal *refusal);
+/*
+ * The render thread: main is to tell the client of this stream, and to end it if it is broken. Kept with the stream, so
+ * that it needs no room and goes with it; one that main has not seen yet is replaced, but for the end.
+ */
+void output_complain(struct output *output, enum output_event_kind kind, struct stream *stream,
+					 const struct refusal *refusal);
 
 /* The render thread; `output` is a struct output. */
 void *output_run(void *output);

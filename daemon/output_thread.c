@@ -27,13 +27,11 @@ static void record(void *data, const struct frame *frame)
 static void report(void *data, enum output_event_kind kind, struct stream *stream, const struct refusal *refusal)
 {
 	struct output *output = data;
-	if (kind == OUTPUT_STREAM_BROKEN) {
+	const bool ends = kind == OUTPUT_STREAM_BROKEN;
+	if (ends)
 		atomic_store(&stream->ended, true);
-		output_break_stream(output, stream, refusal);
-	} else if (log_limit_allows(&stream->log_limit, clock_now(output->params.clock))) {
-		const struct output_event event = output_stream_event(kind, stream, refusal);
-		output_push_event(output, &event);
-	}
+	if (ends || log_limit_allows(&stream->log_limit, clock_now(output->params.clock)))
+		output_complain(output, kind, stream, refusal);
 }
 
 static void engine_made(void *data, const struct engine_info *info)

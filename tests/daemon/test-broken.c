@@ -7,6 +7,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <stdatomic.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include "daemon/server.h"
@@ -35,8 +36,19 @@ static void answer(void *data, uint64_t client_id, uint32_t serial, const char *
 	server_reply(house.server, client_id, serial, 0, text);
 }
 
+static uint32_t keys;
+
 static void on_key(void *data, const struct presenter_key *key)
 {
+	keys++;
+}
+
+static bool was_logged(const char *text)
+{
+	static char content[4096];
+	const ssize_t got = pread(house.log.fd, content, sizeof(content) - 1, 0);
+	content[got > 0 ? got : 0] = 0;
+	return strstr(content, text) != NULL;
 }
 
 static void *run(void *data)
@@ -69,7 +81,8 @@ static bool start(void)
 	settings_set(&house.settings, "present", "headless", &error);
 	snprintf(house.settings.socket, sizeof(house.settings.socket), "%s/socket", house.folder);
 	clock_init_real(&house.clock);
-	log_init(&house.log, LOG_LEVEL_ERROR);
+	log_init(&house.log, LOG_LEVEL_WARNING);
+	house.log.fd = memfd_create("log", MFD_CLOEXEC);
 	house.loop = loop_create(&error);
 	const struct output_params output = {
 		.loop = house.loop, .settings = &house.settings, .clock = &house.clock, .log = &house.log};
@@ -155,26 +168,56 @@ static void test_same_id(void)
 	stand_still();
 }
 
-/* While there is no room for anything more to be told. */
+/* The render thread has looked at what was done to a stream. */
+static void wait_for_render(void)
+{
+	const uint64_t rounds = output_rounds(house.output);
+	while (output_rounds(house.output) < rounds + 2) {
+		output_wake(house.output);
+		usleep(1000);
+	}
+}
+
+/* Refused frames and the end of a stream are told however many keys wait; keys that are lost are not lost silently. */
 static void test_full(void)
 {
 	const struct presenter_key key = {.code = 1};
 	struct raw_stream stream;
 	struct raw_reply reply;
+	struct pursuit_feedback report;
 
 	go_on();
 	const int fd = raw_greet(house.settings.socket);
 	raw_stream_init(&stream, fd, STREAM);
 	CHECK(raw_stream_open(&stream, &reply));
 	stand_still();
-	for (uint32_t i = 0; i < OUTPUT_EVENTS + 1; i++)
+	keys = 0;
+	for (uint32_t i = 0; i < OUTPUT_KEYS + 3; i++)
 		output_press_key(house.output, &key);
-	const uint64_t rounds = output_rounds(house.output);
+	raw_fill(&stream)->plane_count = 99;
+	raw_publish(&stream);
+	output_wake(house.output);
+	CHECK(raw_feedback(&stream, &report));
+	CHECK_INT(report.state, PURSUIT_FEEDBACK_REFUSED);
+	raw_fill(&stream)->reserved[0] = 7;
+	raw_publish(&stream);
+	output_wake(house.output);
+	CHECK(raw_feedback(&stream, &report));
+	CHECK_INT(report.state, PURSUIT_FEEDBACK_REFUSED);
+	wait_for_render();
+	go_on();
+	CHECK_INT(receive(fd, &reply), PURSUIT_MESSAGE_REFUSED);
+	CHECK_INT(reply.refused.code, PURSUIT_REFUSED_FRAME);
+	CHECK_STRING(reply.refused.field, "reserved");
+	CHECK_INT(raw_control(fd, "ping", -1, &reply), 0);
+	CHECK_INT(keys, OUTPUT_KEYS);
+	CHECK(was_logged("3 keys were pressed while 64 waited, and are lost"));
+	stand_still();
+
+	for (uint32_t i = 0; i < OUTPUT_KEYS; i++)
+		output_press_key(house.output, &key);
 	break_stream(&stream);
-	while (output_rounds(house.output) < rounds + 2) {
-		output_wake(house.output);
-		usleep(1000);
-	}
+	wait_for_render();
 	go_on();
 	CHECK_INT(receive(fd, &reply), PURSUIT_MESSAGE_REFUSED);
 	CHECK_STRING(reply.refused.field, "control.latest");

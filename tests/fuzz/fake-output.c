@@ -11,12 +11,14 @@
 
 #include "tests/fuzz/fuzz.h"
 
+#define EVENTS 64u
+
 struct output {
 	struct clock *clock;
 	int event_fd;
 	struct stream *streams[OUTPUT_STREAMS];
 	uint32_t stream_count;
-	struct output_event events[OUTPUT_EVENTS];
+	struct output_event events[EVENTS];
 	uint32_t event_count;
 	struct recorder *recorder;
 };
@@ -49,7 +51,7 @@ static void push_event(struct output *output, enum output_event_kind kind, const
 					   const struct refusal *refusal)
 {
 	const uint64_t one = 1;
-	if (output->event_count < OUTPUT_EVENTS)
+	if (output->event_count < EVENTS)
 		output->events[output->event_count++] =
 			(struct output_event){kind, stream->client_id, stream->stream_id, stream->number, *refusal};
 	FUZZ_EXPECT(write(output->event_fd, &one, sizeof(one)) == (ssize_t)sizeof(one));
