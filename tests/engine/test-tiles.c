@@ -308,9 +308,8 @@ static void test_images_in_turn(void)
 	const uint32_t images = 12;
 	uint64_t held[12] = {0};
 	struct contents contents = {0};
-	const struct layers layers = {.shown = PICTURE_ORIGINAL};
 	struct error error;
-	CHECK_INT(contents_begin(&contents, TILE_WIDTH, TILE_HEIGHT, false, 1, &layers, &error), 0);
+	CHECK_INT(contents_begin(&contents, TILE_WIDTH, TILE_HEIGHT, false, 1, true, &error), 0);
 	for (uint32_t i = 0; i < 10 * images; i++) {
 		struct sheet sheet;
 		contents_open(&contents, held[i % images], &sheet);

@@ -11,7 +11,7 @@
 
 #include "daemon/engine/cpu/bins.h"
 #include "daemon/engine/cpu/canvas.h"
-#include "daemon/engine/cpu/contents.h"
+#include "daemon/engine/contents.h"
 #include "daemon/engine/cpu/layers.h"
 #include "daemon/engine/cpu/levels.h"
 #include "daemon/engine/cpu/light.h"

@@ -195,7 +195,7 @@ static int make_room(struct engine *engine, struct intake *intake, uint32_t item
 		result = reserve(intake, items, error);
 	if (result == 0)
 		result = contents_begin(&executor->contents, engine->width, engine->height, ui, engine->content,
-								&executor->layers, error);
+								executor->layers.shown == PICTURE_ORIGINAL, error);
 	if (result < 0)
 		executor->contents.known = false;
 	return result;

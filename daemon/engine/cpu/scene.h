@@ -12,14 +12,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "daemon/engine/contents.h"
 #include "daemon/engine/cpu/canvas.h"
-#include "daemon/engine/cpu/contents.h"
 #include "daemon/engine/warp_mesh.h"
-
-/* Wide enough for long stores, small enough for the coordinates of a tile to stay in a core's first cache. */
-#define TILE_WIDTH 64u
-#define TILE_HEIGHT 32u
-#define TILE_PIXELS (TILE_WIDTH * TILE_HEIGHT)
 
 /* Place of a triangle's first index in the mesh's lists, by tile, in drawing order. */
 struct bins {

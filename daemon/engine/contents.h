@@ -7,16 +7,21 @@
  * pixels; 0 means nothing. What images were left with is kept under the number that went out with each of them
  * (`holds` of struct engine_image): a number that is not found, since it is another's or too old, tells nothing.
  */
-#ifndef PURSUIT_ENGINE_CPU_CONTENTS_H
-#define PURSUIT_ENGINE_CPU_CONTENTS_H
+#ifndef PURSUIT_ENGINE_CONTENTS_H
+#define PURSUIT_ENGINE_CONTENTS_H
 
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-#include "daemon/engine/cpu/layers.h"
 #include "daemon/engine/executor.h"
+#include "daemon/engine/tiles.h"
 #include "daemon/error.h"
+
+/* Wide enough for long stores, small enough for the coordinates of a tile to stay in a core's first cache. */
+#define TILE_WIDTH 64u
+#define TILE_HEIGHT 32u
+#define TILE_PIXELS (TILE_WIDTH * TILE_HEIGHT)
 
 /* More than presenters have in turn. */
 #define CONTENTS_IMAGES 16u
@@ -30,7 +35,7 @@ struct contents_image {
 struct contents {
 	uint32_t width, height; /* of the picture */
 	uint32_t columns, rows; /* tiles of TILE_WIDTH x TILE_HEIGHT */
-	bool known;             /* `tiles` are what the canvas of ORIGINAL shows; else the next frame is new as a whole */
+	bool known;             /* `tiles` are what ORIGINAL shows; else the next frame is new as a whole */
 	bool ui;                /* with a UI over it */
 	uint64_t now;           /* of the tiles that differ in the frame begun last */
 	uint64_t *tiles;        /* by tile of ORIGINAL, row by row */
@@ -53,14 +58,15 @@ void contents_finish(struct contents *contents);
 uint64_t contents_bytes(const struct contents *contents);
 
 /*
- * A frame of that size begins, whose tiles are `now` where they differ from what was. Before the canvas is written to;
- * `layers` is what it holds. 0, or -ENOMEM with a sentence; then nothing is known.
+ * A frame of that size begins, whose tiles are `now` where they differ from what was. Before ORIGINAL is written to.
+ * `original`: where it is kept nothing else is; else one of REAL and BETWEEN is, and tiles in which they differ are
+ * `now`. 0, or -ENOMEM with a sentence; then nothing is known.
  */
-int contents_begin(struct contents *contents, uint32_t width, uint32_t height, bool ui, uint64_t now,
-				   const struct layers *layers, struct error *error);
+int contents_begin(struct contents *contents, uint32_t width, uint32_t height, bool ui, uint64_t now, bool original,
+				   struct error *error);
 
-/* REAL and BETWEEN differ from ORIGINAL in these blocks, and nowhere else. */
-void contents_layer(struct contents *contents, const struct layers *layers);
+/* REAL and BETWEEN differ from ORIGINAL where `low` is marked, and nowhere else. */
+void contents_layer(struct contents *contents, const struct tiles *low);
 
 /* The tile of ORIGINAL, or of the UI over it, is another than in the frame before. Any thread. */
 static inline void contents_change(struct contents *contents, uint32_t tile)

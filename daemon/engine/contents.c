@@ -1,13 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-#include "daemon/engine/cpu/contents.h"
+#include "daemon/engine/contents.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "daemon/engine/cpu/scene.h"
 
 void contents_finish(struct contents *contents)
 {
@@ -57,33 +55,30 @@ static int resize(struct contents *contents, uint32_t width, uint32_t height, st
 	return 0;
 }
 
-static uint32_t tile_of(const struct contents *contents, const struct block *block)
-{
-	return block->y / TILE_HEIGHT * contents->columns + block->x / TILE_WIDTH;
-}
-
-int contents_begin(struct contents *contents, uint32_t width, uint32_t height, bool ui, uint64_t now,
-				   const struct layers *layers, struct error *error)
+int contents_begin(struct contents *contents, uint32_t width, uint32_t height, bool ui, uint64_t now, bool original,
+				   struct error *error)
 {
 	const int result = resize(contents, width, height, error);
 	if (result < 0)
 		return result;
+	const bool all = !contents->known || contents->ui != ui;
 	contents->now = now;
-	for (size_t i = 0; (!contents->known || contents->ui != ui) && i < (size_t)contents->columns * contents->rows; i++)
-		contents->tiles[i] = now;
-	/* The canvas holds something else there than what the number stands for. */
-	for (uint32_t i = 0; i < layers->count && layers->shown != PICTURE_ORIGINAL && contents->known; i++)
-		contents->tiles[tile_of(contents, &layers->blocks[i])] = now;
+	for (size_t i = 0; i < (size_t)contents->columns * contents->rows && (all || !original); i++)
+		if (all || contents->layered[i])
+			contents->tiles[i] = now;
 	contents->known = true;
 	contents->ui = ui;
 	return 0;
 }
 
-void contents_layer(struct contents *contents, const struct layers *layers)
+void contents_layer(struct contents *contents, const struct tiles *low)
 {
 	memset(contents->layered, 0, (size_t)contents->columns * contents->rows);
-	for (uint32_t i = 0; i < layers->count; i++)
-		contents->layered[tile_of(contents, &layers->blocks[i])] = 1;
+	for (uint32_t i = 0; i < low->columns * low->rows; i++) {
+		const uint32_t x = i % low->columns * low->tile, y = i / low->columns * low->tile;
+		if (low->marked[i])
+			contents->layered[y / TILE_HEIGHT * contents->columns + x / TILE_WIDTH] = 1;
+	}
 }
 
 static struct contents_image *find(struct contents *contents, uint64_t number)
