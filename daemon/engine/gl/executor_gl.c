@@ -69,7 +69,10 @@ static void destroy(struct executor **executor)
 	context_destroy(&gone->context);
 	pool_destroy(&gone->base.pool);
 	tiles_finish(&gone->shown.changed);
-	free(gone->row);
+	contents_finish(&gone->contents);
+	free(gone->intake.hashes[0]);
+	free(gone->intake.hashes[1]);
+	free(gone->intake.rows);
 	free(gone);
 	*executor = NULL;
 }
@@ -184,6 +187,11 @@ struct executor *executor_gl_create(const struct engine_params *params, struct e
 		return NULL;
 	}
 	executor->base.ops = &ops;
+	struct executor *made = &executor->base;
+	if (tile_key_make(&executor->intake.key, error) < 0) {
+		destroy(&made);
+		return NULL;
+	}
 	executor->base.info = executor->context->info;
 	executor->base.max_size = (uint32_t)executor->context->gl.max_size;
 	timer_init(&executor->timer, &executor->context->gl, !executor->base.info.software || params->query_software,

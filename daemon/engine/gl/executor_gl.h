@@ -5,6 +5,7 @@
 #ifndef PURSUIT_ENGINE_GL_EXECUTOR_GL_H
 #define PURSUIT_ENGINE_GL_EXECUTOR_GL_H
 
+#include "daemon/engine/contents.h"
 #include "daemon/engine/gl/analysis.h"
 #include "daemon/engine/gl/context.h"
 #include "daemon/engine/gl/layers.h"
@@ -12,6 +13,7 @@
 #include "daemon/engine/gl/readback.h"
 #include "daemon/engine/gl/stream.h"
 #include "daemon/engine/gl/target.h"
+#include "daemon/engine/gl/tile_hash.h"
 #include "daemon/engine/gl/timer.h"
 #include "daemon/engine/gl/warp_buffers.h"
 #include "daemon/engine/state.h"
@@ -27,6 +29,16 @@ struct shown {
 	struct tiles changed;    /* where others may have drawn over what does not move: folds, the UI */
 };
 
+/* Which tiles the textures of ORIGINAL and UI hold, and what is on its way there: pass_upload.c. */
+struct gl_intake {
+	struct tile_key key;
+	struct tile_hash *hashes[2]; /* by tile of ORIGINAL and of the UI */
+	bool hashed[2];              /* that they are what the textures hold */
+	size_t tiles;                /* room for so many in each */
+	uint8_t *rows;               /* a row of tiles, since blocks on their way up may not be read */
+	size_t row_bytes;
+};
+
 struct executor_gl {
 	struct executor base;
 	struct context *context;
@@ -38,8 +50,8 @@ struct executor_gl {
 	struct stream stream;
 	struct readback readback;
 	struct analysis analysis;
-	uint8_t *row; /* of the UI */
-	size_t row_bytes;
+	struct gl_intake intake;
+	struct contents contents;
 	struct tile_buffer level_tiles;
 	struct gl_layers layers;
 	struct shown shown;

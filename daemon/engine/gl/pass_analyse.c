@@ -121,8 +121,8 @@ static int send(struct engine *engine, struct analysis_plane *texture, int index
 			return -ENOMEM;
 		for (uint32_t i = 0; i < rows; i++)
 			memcpy(to + i * row_bytes, data + (y + i) * plane->stride, bytes);
-		const struct stream_target target = {(GLint)y, (GLsizei)plane->width, (GLsizei)rows, kind.format, kind.type};
-		result = stream_send(stream, gl, &target, error);
+		const struct stream_target target = {0, (GLint)y, (GLsizei)plane->width, (GLsizei)rows, kind.format, kind.type};
+		result = stream_send(stream, gl, &target, 1, error);
 		engine->report.bytes_up += rows * row_bytes;
 	}
 	return result;

@@ -136,6 +136,9 @@ static int run(struct engine *engine, struct error *error)
 	int result = gl_picture(engine, PICTURE_ORIGINAL, &picture, error);
 	gl_layers_forget(layers);
 	take_settings(engine, layers);
+	if (layers->variant & VARIANT_WEIGHT_ONE)
+		tiles_mark_all(&engine->mesh.low);
+	contents_layer(&gl_of(engine)->contents, &engine->mesh.low);
 	if (result == 0)
 		result = target_resize(&layers->kept, table_of(engine), engine->width, engine->height, error);
 	if (result == 0)

@@ -2,8 +2,9 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Colour and UI to the GPU, by blocks of rows that are first copied to private
- * memory: converted to the display's code values and made opaque on the way.
+ * Colour and UI to the GPU, by rows of tiles that are first copied to private memory: converted to the display's code
+ * values and made opaque on the way. Tiles that the textures hold already are not sent; if after a frame that did not
+ * move none is, the picture is what it was.
  */
 #include "daemon/engine/gl/executor_gl.h"
 
@@ -13,93 +14,232 @@
 
 #include "daemon/engine/pass.h"
 
-/* Where a row can be read after it was written: blocks on their way up may not. */
-static int reserve_row(struct executor_gl *executor, size_t bytes, struct error *error)
-{
-	if (bytes <= executor->row_bytes)
-		return 0;
-	free(executor->row);
-	executor->row = malloc(bytes);
-	executor->row_bytes = executor->row ? bytes : 0;
-	return executor->row ? 0 : error_set(error, -ENOMEM, "out of memory for a row of %zu bytes", bytes);
-}
+/* A call costs more than so many tiles of a row that are there already. */
+#define TILES_OF_CALL 3u
+/* Rectangles of a row of tiles; the last takes the rest of it. */
+#define MOST_CALLS 16u
+#define MOST_TILES ((PURSUIT_MAX_SIZE + TILE_WIDTH - 1) / TILE_WIDTH)
 
-/* What is sent: a plane, converted. `bounds`: NULL for the opaque picture, else those of what is not transparent. */
+/* What is sent: a plane, converted. */
 struct layer {
+	enum picture_id id;
 	const struct convert *convert;
 	const struct pursuit_plane *plane;
 	const uint8_t *data;
-	struct bounds *bounds;
+	struct bounds *bounds; /* of what is not transparent; NULL for the opaque picture */
+	struct tile_hash *hashes;
+	bool *hashed;
+	bool differs; /* some of it was sent */
 };
 
-static void fill(uint8_t *to, uint8_t *private, const struct layer *layer, uint32_t y, uint32_t rows)
+/* A row of tiles on its way. */
+struct tile_row {
+	uint32_t y, rows;      /* pixels of the picture */
+	uint32_t first, count; /* tiles */
+	struct stream_target targets[MOST_CALLS];
+	uint32_t target_count;
+	size_t bytes;
+};
+
+static int reserve_hashes(struct gl_intake *intake, size_t tiles, struct error *error)
+{
+	if (tiles <= intake->tiles)
+		return 0;
+	intake->tiles = 0;
+	for (int i = 0; i < 2; i++) {
+		free(intake->hashes[i]);
+		intake->hashes[i] = malloc(tiles * sizeof(*intake->hashes[i]));
+	}
+	if (!intake->hashes[0] || !intake->hashes[1])
+		return error_set(error, -ENOMEM, "out of memory for %zu tiles", tiles);
+	intake->tiles = tiles;
+	return 0;
+}
+
+static int reserve_rows(struct gl_intake *intake, size_t row_bytes, struct error *error)
+{
+	if (row_bytes <= intake->row_bytes)
+		return 0;
+	free(intake->rows);
+	intake->rows = malloc(TILE_HEIGHT * row_bytes);
+	intake->row_bytes = intake->rows ? row_bytes : 0;
+	return intake->rows ? 0 : error_set(error, -ENOMEM, "out of memory for rows of %zu bytes", row_bytes);
+}
+
+/* Takes a row of tiles, each pixel once. */
+static void take(const struct gl_intake *intake, const struct layer *layer, const struct tile_row *row,
+				 struct tile_hash *hashes)
 {
 	const uint32_t width = layer->plane->width;
-	const size_t row_bytes = 4 * (size_t)width;
-	for (uint32_t i = 0; i < rows; i++, to += row_bytes) {
-		uint8_t *row = layer->bounds ? private : to;
-		convert_row(layer->convert, row, layer->data + (y + i) * layer->plane->stride, width, !layer->bounds);
-		if (!layer->bounds)
-			continue;
-		bounds_widen(layer->bounds, row, width, y + i);
-		memcpy(to, row, row_bytes);
+	memset(hashes, 0, row->count * sizeof(*hashes));
+	for (uint32_t i = 0; i < row->rows; i++) {
+		uint8_t *to = intake->rows + 4 * (size_t)width * i;
+		convert_row(layer->convert, to, layer->data + (row->y + i) * layer->plane->stride, width, !layer->bounds);
+		tile_hash_row(&intake->key, i, to, width, hashes);
+		if (layer->bounds)
+			bounds_widen(layer->bounds, to, width, row->y + i);
 	}
 }
 
-static int send_rows(struct engine *engine, const struct layer *layer, uint32_t y, uint32_t rows, struct error *error)
+/* The tiles from `left` on to `right` - 1 go up. */
+static void add_target(const struct gl *gl, const struct layer *layer, struct tile_row *row, uint32_t left,
+					   uint32_t right)
+{
+	const uint32_t x = left * TILE_WIDTH, end = right * TILE_WIDTH;
+	const uint32_t width = (end < layer->plane->width ? end : layer->plane->width) - x;
+	row->targets[row->target_count++] = (struct stream_target){.x = (GLint)x,
+															   .y = (GLint)row->y,
+															   .width = (GLsizei)width,
+															   .rows = (GLsizei)row->rows,
+															   .format = gl->pixel_format,
+															   .type = gl->pixel_type,
+															   .offset = row->bytes};
+	row->bytes += 4 * (size_t)width * row->rows;
+}
+
+/* Finds what has to be sent. Tiles in between that are there already go along where they are few. */
+static void find_targets(struct engine *engine, struct layer *layer, struct tile_row *row,
+						 const struct tile_hash *hashes)
+{
+	struct contents *contents = &gl_of(engine)->contents;
+	uint32_t left = 0, right = 0; /* of what goes up next, if left < right */
+	for (uint32_t i = 0; i < row->count; i++) {
+		struct tile_hash *known = &layer->hashes[row->first + i];
+		const bool forced = !*layer->hashed || (!layer->bounds && contents_changed(contents, row->first + i));
+		if (!forced && tile_hash_equal(known, &hashes[i]))
+			continue;
+		*known = hashes[i];
+		contents_change(contents, row->first + i);
+		if (left < right && i - right >= TILES_OF_CALL && row->target_count + 1 < MOST_CALLS) {
+			add_target(table_of(engine), layer, row, left, right);
+			left = i;
+		}
+		left = left < right ? left : i;
+		right = i + 1;
+	}
+	if (left < right)
+		add_target(table_of(engine), layer, row, left, right);
+}
+
+static int send(struct engine *engine, struct layer *layer, const struct tile_row *row, struct error *error)
 {
 	struct executor_gl *executor = gl_of(engine);
 	const struct gl *gl = table_of(engine);
-	const size_t bytes = 4 * (size_t)layer->plane->width * rows;
-	uint8_t *to = stream_begin(&executor->stream, gl, bytes, error);
+	uint8_t *to = stream_begin(&executor->stream, gl, row->bytes, error);
 	if (!to)
 		return -ENOMEM;
-	fill(to, executor->row, layer, y, rows);
-	engine->report.bytes_up += bytes;
-	const struct stream_target target = {(GLint)y, (GLsizei)layer->plane->width, (GLsizei)rows, gl->pixel_format,
-										 gl->pixel_type};
-	return stream_send(&executor->stream, gl, &target, error);
+	for (uint32_t i = 0; i < row->target_count; i++) {
+		const struct stream_target *target = &row->targets[i];
+		const size_t bytes = 4 * (size_t)target->width;
+		for (uint32_t y = 0; y < row->rows; y++, to += bytes)
+			memcpy(to, executor->intake.rows + 4 * ((size_t)y * layer->plane->width + (size_t)target->x), bytes);
+	}
+	engine->report.bytes_up += row->bytes;
+	layer->differs = true;
+	return stream_send(&executor->stream, gl, row->targets, row->target_count, error);
 }
 
-static int upload(struct engine *engine, enum picture_id id, const struct layer *layer, struct error *error)
+static int upload_row(struct engine *engine, struct layer *layer, uint32_t index, struct error *error)
+{
+	struct executor_gl *executor = gl_of(engine);
+	struct tile_hash hashes[MOST_TILES];
+	struct tile_row row = {.y = index * TILE_HEIGHT, .count = executor->contents.columns};
+	row.rows = engine->height - row.y < TILE_HEIGHT ? engine->height - row.y : TILE_HEIGHT;
+	row.first = index * row.count;
+	if (!layer->bounds && !planes_changed(engine, row.y, row.rows))
+		return 0;
+	take(&executor->intake, layer, &row, hashes);
+	find_targets(engine, layer, &row, hashes);
+	return row.target_count ? send(engine, layer, &row, error) : 0;
+}
+
+static int upload(struct engine *engine, struct layer *layer, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
-	const uint32_t width = layer->plane->width, height = layer->plane->height;
-	const uint32_t block = stream_rows(4 * (size_t)width);
-	int result = target_resize(picture_of(engine, id), gl, width, height, error);
-	if (result == 0 && layer->bounds)
-		result = reserve_row(gl_of(engine), 4 * (size_t)width, error);
+	int result = target_resize(picture_of(engine, layer->id), gl, engine->width, engine->height, error);
 	gl->ActiveTexture(GL_TEXTURE0);
-	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, id)->texture);
-	for (uint32_t y = 0; y < height && result == 0; y += block) {
-		uint32_t rows = height - y < block ? height - y : block;
-		if (layer->bounds || planes_changed(engine, y, rows))
-			result = send_rows(engine, layer, y, rows, error);
+	gl->BindTexture(GL_TEXTURE_2D, picture_of(engine, layer->id)->texture);
+	for (uint32_t i = 0; i < gl_of(engine)->contents.rows && result == 0; i++)
+		result = upload_row(engine, layer, i, error);
+	*layer->hashed = result == 0;
+	return result;
+}
+
+/* Nothing differs from a frame that did not move: it rests. */
+static void conclude_look(struct engine *engine)
+{
+	if (!engine->damage.comparable || engine->damage.known || !engine->rested)
+		return;
+	engine->damage.known = engine->damage.found = true;
+	engine->damage.count = 0;
+	engine->content = engine->content_before;
+	report_leave_out(&engine->report, "upload", "unchanged");
+}
+
+static struct layer layer_of(struct engine *engine, enum picture_id id, int index)
+{
+	const struct frame *frame = engine->job.frame;
+	const bool opaque = id == PICTURE_ORIGINAL;
+	struct gl_intake *intake = &gl_of(engine)->intake;
+	return (struct layer){.id = id,
+						  .convert = opaque ? &engine->color_convert : &engine->ui_convert,
+						  .plane = &frame->header.planes[index],
+						  .data = frame->planes[index],
+						  .bounds = opaque ? NULL : &engine->ui_bounds,
+						  .hashes = intake->hashes[!opaque],
+						  .hashed = &intake->hashed[!opaque]};
+}
+
+static int make_room(struct engine *engine, bool ui, bool original, struct error *error)
+{
+	struct executor_gl *executor = gl_of(engine);
+	struct contents *contents = &executor->contents;
+	struct gl_intake *intake = &executor->intake;
+	const bool same = contents->width == engine->width && contents->height == engine->height;
+	intake->hashed[0] &= same;
+	intake->hashed[1] &= same && ui && contents->ui;
+	int result = contents_begin(contents, engine->width, engine->height, ui, engine->content, original, error);
+	if (result == 0)
+		result = reserve_hashes(intake, (size_t)contents->columns * contents->rows, error);
+	return result == 0 ? reserve_rows(intake, 4 * (size_t)engine->width, error) : result;
+}
+
+/* What the texture holds is about to be another's, or not known at all. */
+static int take_planes(struct engine *engine, int color, int ui, bool original, struct error *error)
+{
+	int result = make_room(engine, ui >= 0, original, error);
+	if (result < 0)
+		return result;
+	struct layer opaque = layer_of(engine, PICTURE_ORIGINAL, color), layer = {.differs = false};
+	result = upload(engine, &opaque, error);
+	if (result == 0 && ui >= 0) {
+		layer = layer_of(engine, PICTURE_UI, ui);
+		result = upload(engine, &layer, error);
 	}
+	if (result == 0 && !opaque.differs && !layer.differs)
+		conclude_look(engine);
 	return result;
 }
 
 static int run(struct engine *engine, struct error *error)
 {
+	struct executor_gl *executor = gl_of(engine);
 	const struct target *whole;
 	int color, ui;
 	int result = planes_prepare(engine, &color, &ui, error);
 	if (result == 0 && engine->damage.known)
 		result = gl_picture(engine, PICTURE_ORIGINAL, &whole, error);
-	gl_layers_forget(&gl_of(engine)->layers);
+	const bool original = executor->layers.shown == PICTURE_ORIGINAL;
+	gl_layers_forget(&executor->layers);
 	if (result == 0 && !planes_changed(engine, 0, engine->height)) {
 		report_leave_out(&engine->report, "upload", "unchanged");
 		return 0;
 	}
+	if (result == 0)
+		result = take_planes(engine, color, ui, original, error);
 	if (result < 0)
-		return result;
-	const struct frame *frame = engine->job.frame;
-	const struct layer opaque = {&engine->color_convert, &frame->header.planes[color], frame->planes[color], NULL};
-	result = upload(engine, PICTURE_ORIGINAL, &opaque, error);
-	if (result < 0 || ui < 0)
-		return result;
-	const struct layer layer = {&engine->ui_convert, &frame->header.planes[ui], frame->planes[ui], &engine->ui_bounds};
-	return upload(engine, PICTURE_UI, &layer, error);
+		executor->contents.known = executor->intake.hashed[0] = executor->intake.hashed[1] = false;
+	return result;
 }
 
 const struct pass gl_pass_upload = {.run = run};

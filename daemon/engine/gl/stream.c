@@ -59,13 +59,15 @@ uint8_t *stream_begin(struct stream *stream, const struct gl *gl, size_t bytes, 
 	return NULL;
 }
 
-int stream_send(struct stream *stream, const struct gl *gl, const struct stream_target *target, struct error *error)
+int stream_send(struct stream *stream, const struct gl *gl, const struct stream_target *targets, uint32_t count,
+				struct error *error)
 {
 	struct stream_block *block = &stream->blocks[stream->next];
 	bool good = gl->UnmapBuffer(GL_PIXEL_UNPACK_BUFFER);
+	for (const struct stream_target *to = targets; to < targets + count && good; to++)
+		gl->TexSubImage2D(GL_TEXTURE_2D, 0, to->x, to->y, to->width, to->rows, to->format, to->type,
+						  (const void *)to->offset);
 	if (good) {
-		gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, target->y, target->width, target->rows, target->format, target->type,
-						  NULL);
 		block->busy = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
 		stream->next = (stream->next + 1) % STREAM_BLOCKS;
 	}

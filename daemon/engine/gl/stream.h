@@ -28,11 +28,12 @@ struct stream {
 	uint64_t waits; /* blocks that were still being read when it was their turn */
 };
 
-/* Rows of the texture that is bound. */
+/* A rectangle of the texture that is bound, and where in the block its rows begin, one after another. */
 struct stream_target {
-	GLint y;
+	GLint x, y;
 	GLsizei width, rows;
 	GLenum format, type;
+	size_t offset;
 };
 
 /* A zeroed stream is ready for use. */
@@ -44,8 +45,9 @@ uint32_t stream_rows(size_t row_bytes);
 /* Memory for `bytes`, to be written and not read; NULL with a sentence. stream_send() follows. */
 uint8_t *stream_begin(struct stream *stream, const struct gl *gl, size_t bytes, struct error *error);
 
-/* Sends it. 0, or -EIO with a sentence: GL has lost what was written. */
-int stream_send(struct stream *stream, const struct gl *gl, const struct stream_target *target, struct error *error);
+/* Sends it, to `count` rectangles. 0, or -EIO with a sentence: GL has lost what was written. */
+int stream_send(struct stream *stream, const struct gl *gl, const struct stream_target *targets, uint32_t count,
+				struct error *error);
 
 /* Bytes that it holds in GL buffers. */
 uint64_t stream_bytes(const struct stream *stream);
