@@ -11,19 +11,32 @@
 
 #include <stdbool.h>
 
-#include "daemon/engine/analysis/dense.h"
+#include "daemon/engine/analysis/motion_plane.h"
 
 struct bend_vector {
 	float x, y;
 };
 
+/* The frame taken last. */
+struct bend_before {
+	bool known;                 /* there is one */
+	uint64_t frame_id, time_ns; /* as its header says */
+	double motion_s;            /* S', 0 unknown */
+	enum plan_rest rest;        /* PLAN_MOVES: `motion` is its */
+	bool backward;              /* its motion led from the frame before it */
+	uint32_t width, height;     /* of colour */
+	struct plan_motion_plane motion;
+};
+
 /* Memory that is kept from frame to frame; zeroed: nothing is known of a frame before. */
 struct bend {
-	struct plan_dense field;               /* of the frame taken last */
-	bool known;                            /* there is one */
+	struct bend_before before;
 	struct bend_vector *straight, *change; /* u and a, by vertex of the plan; pixels per interval */
+	float span;                            /* S / T */
 	uint32_t capacity;
-	uint32_t bent; /* vertices with a change */
+	uint32_t bent;      /* vertices with a change */
+	const char *reason; /* why none has (docs/method.md, 8), if the frame moves; NULL: some have. Static */
+	const struct plan_kernels *kernels; /* of the machine, found with the first frame */
 };
 
 /*

@@ -12,6 +12,7 @@
 
 #define SIDE 160u
 #define RADIUS 60.0
+#define EPOCH_NS UINT64_C(1000000000)
 
 struct point {
 	double x, y;
@@ -74,15 +75,17 @@ static void move(struct world *world, enum motion_path path, double time, double
 		}
 }
 
-/* Both frames through the analysis, as the engine does it. */
-static int extrapolate(struct world *world, enum motion_path path, double interval_s, struct plan *plan,
+/* Both frames, `gap` intervals from one another, through the analysis, as the engine does it. */
+static int extrapolate(struct world *world, enum motion_path path, double interval_s, uint32_t gap, struct plan *plan,
 					   struct bend *bend, struct error *error)
 {
 	/* So far away that everything can be tracked. */
 	const struct plan_params params = {.viewing_distance_mm = 1e6f, .last_phase = 1.0f};
 	int result = 0;
-	for (int frame = -1; frame <= 0 && result == 0; frame++) {
-		move(world, path, frame * interval_s, interval_s);
+	for (uint32_t frame = 0; frame <= gap && result == 0; frame += gap) {
+		world->frame.header.frame_id = 1 + frame;
+		world->frame.header.time_ns = EPOCH_NS + frame * world->frame.header.real_interval_ns;
+		move(world, path, ((double)frame - gap) * interval_s, interval_s);
 		result = plan_make(plan, &world->frame, &params, error);
 		if (result == 0)
 			result = bend_begin(bend, &world->frame, plan, &params, error);
@@ -105,8 +108,8 @@ static double worst_error(const struct plan *plan, enum motion_path path, double
 	return worst;
 }
 
-double motion_order_error(enum motion_path path, enum engine_motion_model model, double interval_s, double phase,
-						  struct error *error)
+double motion_order_error(enum motion_path path, enum engine_motion_model model, double interval_s, uint32_t gap,
+						  double phase, struct error *error)
 {
 	struct world *world = calloc(1, sizeof(*world));
 	struct plan plan = {0};
@@ -117,7 +120,7 @@ double motion_order_error(enum motion_path path, enum engine_motion_model model,
 		return worst;
 	}
 	describe(world, interval_s);
-	if (extrapolate(world, path, interval_s, &plan, &bend, error) == 0) {
+	if (extrapolate(world, path, interval_s, gap, &plan, &bend, error) == 0) {
 		if (model == ENGINE_MOTION_QUADRATIC)
 			bend_apply(&bend, &plan, phase);
 		worst = worst_error(&plan, path, interval_s, phase);

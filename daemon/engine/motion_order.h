@@ -21,10 +21,11 @@ enum motion_path {
 const char *motion_path_name(enum motion_path path);
 
 /*
- * The largest distance of a vertex from the truth, in pixels, when it is extrapolated to the phase from two frames that
- * lie `interval_s` (1/240 to 1/10) apart. Negative with a sentence if memory is out.
+ * The largest distance of a vertex from the truth, in pixels, when it is extrapolated to the phase from two frames
+ * whose motion spans `interval_s` (1/240 to 1/10), the real interval, and that lie `gap` (1 to 8) such intervals apart:
+ * those between them were lost. Negative with a sentence if memory is out.
  */
-double motion_order_error(enum motion_path path, enum engine_motion_model model, double interval_s, double phase,
-						  struct error *error);
+double motion_order_error(enum motion_path path, enum engine_motion_model model, double interval_s, uint32_t gap,
+						  double phase, struct error *error);
 
 #endif

@@ -33,7 +33,10 @@ int analyse_bend(struct engine *engine, const struct plan_params *params, struct
 {
 	if (engine->params.motion_model != ENGINE_MOTION_QUADRATIC)
 		return 0;
-	return bend_begin(&engine->bend, engine->job.frame, &engine->plan, params, error);
+	const int result = bend_begin(&engine->bend, engine->job.frame, &engine->plan, params, error);
+	if (result == 0 && engine->plan.rest == PLAN_MOVES && engine->bend.reason)
+		report_leave_out(&engine->report, "acceleration", engine->bend.reason);
+	return result;
 }
 
 static int run(struct engine *engine, struct error *error)

@@ -2,9 +2,10 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /* What the quadratic motion model takes for the motion of the frame before (docs/method.md, 10). */
-#include "daemon/engine/engine.h"
-#include "tests/engine/picture.h"
 #include "tests/test.h"
+
+#include "daemon/engine/state.h"
+#include "tests/engine/picture.h"
 
 #define WIDTH 96u
 #define HEIGHT 64u
@@ -13,7 +14,9 @@
 static struct engine *make_engine(enum engine_motion_model model)
 {
 	struct error error;
-	const struct engine_params params = {.context = ENGINE_CONTEXT_CPU, .motion_model = model, .threads = 1};
+	/* Pixels of common size, so that motion of some of them can be tracked. */
+	const struct engine_params params = {
+		.context = ENGINE_CONTEXT_CPU, .motion_model = model, .threads = 1, .display_width_mm = 27.0f};
 	return engine_create(&params, &error);
 }
 
@@ -83,9 +86,267 @@ static void test_unchanged_frame_stood_still(void)
 	CHECK(!bends_after(true, true));
 }
 
+/* ---- frames that are no neighbours ---- */
+
+#define T_NS UINT64_C(25000000)
+
+/* How a frame differs from one that is the next, T after the one before. */
+struct step {
+	float motion; /* pixels that all moves by */
+	uint64_t id;
+	uint64_t time_ns, real_ns, motion_ns;
+	uint32_t flags;
+	bool forward, small;
+};
+
+static void take(struct engine *engine, const struct step *step)
+{
+	struct picture picture;
+	picture_init(&picture, WIDTH, step->small ? HEIGHT / 2 : HEIGHT, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION);
+	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 5);
+	for (uint32_t y = 0; y < picture.height; y++)
+		for (uint32_t x = 0; x < WIDTH; x++)
+			picture_set_motion(&picture, x, y, step->motion, 0.0f);
+	struct pursuit_frame_header *header = &picture.frame.header;
+	header->flags = step->flags;
+	header->time_ns = step->time_ns;
+	header->real_interval_ns = step->real_ns;
+	header->motion_interval_ns = step->motion_ns;
+	header->motion_kind = step->forward ? PURSUIT_MOTION_FORWARD : PURSUIT_MOTION_BACKWARD;
+	begin(engine, &picture, step->id);
+	picture_finish(&picture);
+}
+
+/* Why the frame begun last did not bend; "" if it did. */
+static const char *reason_of(struct engine *engine)
+{
+	const struct engine_report *report = engine_get_report(engine);
+	for (uint32_t i = 0; i < report->left_out_count; i++)
+		if (strcmp(report->left_out[i].name, "acceleration") == 0)
+			return report->left_out[i].reason;
+	return "";
+}
+
+static const char *reason_after(const struct step *before, const struct step *now)
+{
+	struct engine *engine = make_engine(ENGINE_MOTION_QUADRATIC);
+	take(engine, before);
+	take(engine, now);
+	const char *reason = reason_of(engine);
+	engine_destroy(&engine);
+	return reason;
+}
+
+static const struct step first = {.motion = 3.0f, .id = 7, .time_ns = 100 * T_NS, .real_ns = T_NS};
+static const struct step second = {.motion = 4.0f, .id = 8, .time_ns = 101 * T_NS, .real_ns = T_NS};
+
+static void check_reason(const char *reason, struct step before, struct step now)
+{
+	CHECK_STRING(reason_after(&before, &now), reason);
+}
+
+static void test_reasons(void)
+{
+	struct engine *engine = make_engine(ENGINE_MOTION_QUADRATIC);
+	struct step now = second, before = first;
+	take(engine, &first);
+	CHECK_STRING(reason_of(engine), "first");
+	engine_destroy(&engine);
+	check_reason("", first, second);
+	now.motion = 3.0f;
+	check_reason("no-change", first, now);
+	now = second;
+	now.small = true;
+	check_reason("size", first, now);
+	now = second;
+	now.forward = true;
+	check_reason("forward", first, now);
+	before.forward = true;
+	check_reason("forward", before, second);
+	before = first;
+	before.flags = PURSUIT_FRAME_CUT;
+	check_reason("cut", before, second);
+	before.flags = PURSUIT_FRAME_MOTION_INVALID;
+	check_reason("motion-invalid", before, second);
+}
+
+/* What times say counts, of neighbours the interval before them; without any only neighbours are known to be T apart.
+ */
+static void test_times(void)
+{
+	struct step now = second, before = first;
+	now.id = 9;
+	now.time_ns = 102 * T_NS;
+	check_reason("", first, now);
+	now.time_ns = 108 * T_NS;
+	check_reason("", first, now);
+	now.time_ns = 109 * T_NS;
+	check_reason("frames-lost", first, now);
+	now.time_ns = first.time_ns;
+	check_reason("frames-lost", first, now);
+	now.time_ns = first.time_ns - 1;
+	check_reason("frames-lost", first, now);
+	now.time_ns = 0;
+	check_reason("frames-lost", first, now);
+	before.time_ns = 0;
+	check_reason("frames-lost", before, now);
+	now.id = 8;
+	check_reason("", before, now);
+	now.id = 7;
+	check_reason("not-later", first, now);
+	now.id = 1;
+	check_reason("not-later", first, now);
+	now = second;
+	now.real_ns = 1;
+	now.motion_ns = T_NS;
+	check_reason("intervals", first, now);
+	before = first;
+	before.motion_ns = 1;
+	check_reason("intervals", before, second);
+	before.motion_ns = 1000 * T_NS;
+	check_reason("intervals", before, second);
+}
+
+static void draw_after(const struct step *before, const struct step *now, uint8_t *pixels)
+{
+	struct engine *engine = make_engine(ENGINE_MOTION_QUADRATIC);
+	take(engine, before);
+	take(engine, now);
+	draw_between(engine, pixels);
+	engine_destroy(&engine);
+}
+
+/* Where the older of two frames shows what is here, several steps to the left. */
+static bool same_right_half(const uint8_t *a, const uint8_t *b)
+{
+	for (uint32_t y = 0; y < HEIGHT; y++)
+		if (memcmp(a + (size_t)STRIDE * y + STRIDE / 2, b + (size_t)STRIDE * y + STRIDE / 2, STRIDE / 2) != 0)
+			return false;
+	return true;
+}
+
+/* What speeds up evenly is followed as well when frames between were lost, or motion spans another time. */
+static void test_lost_frames(void)
+{
+	static uint8_t next[STRIDE * HEIGHT], other[STRIDE * HEIGHT];
+	struct step now = {.motion = 8.0f, .id = 8, .time_ns = 101 * T_NS, .real_ns = T_NS}, before = first;
+	before.motion = 7.5f;
+	draw_after(&before, &now, next);
+	before.motion = 7.0f;
+	now.id = 9;
+	now.time_ns = 102 * T_NS;
+	draw_after(&before, &now, other);
+	CHECK(same_right_half(next, other));
+	before.motion = 6.0f;
+	now.id = 11;
+	now.time_ns = 104 * T_NS;
+	draw_after(&before, &now, other);
+	CHECK(same_right_half(next, other));
+	/* The same at twice the speed of the middle of two intervals. */
+	before.motion = 14.5f;
+	before.motion_ns = 2 * T_NS;
+	now.id = 8;
+	now.time_ns = 101 * T_NS;
+	draw_after(&before, &now, other);
+	CHECK(same_right_half(next, other));
+	before.motion = 7.0f;
+	before.motion_ns = 0;
+	draw_after(&before, &now, other);
+	CHECK(!same_right_half(next, other));
+}
+
+/* ---- anything ---- */
+
+static float any_motion(uint32_t *seed)
+{
+	static const float values[] = {0.0f, -0.0f, 1e-42f, 0.5f, -3.0f, 17.0f, 65504.0f, -1e30f, INFINITY, -INFINITY, NAN};
+	const uint32_t bits = picture_random(seed) >> 8;
+	return values[bits % (sizeof(values) / sizeof(values[0]))];
+}
+
+static uint64_t any_time(uint32_t *seed)
+{
+	static const uint64_t values[] = {0,        1,        1000000,           T_NS - 3000000, T_NS, T_NS + 9000000,
+									  8 * T_NS, 9 * T_NS, UINT64_C(1) << 62, UINT64_MAX};
+	return values[(picture_random(seed) >> 8) % (sizeof(values) / sizeof(values[0]))];
+}
+
+static void check_finite(const struct plan *plan)
+{
+	int wrong = 0;
+	for (uint32_t i = 0; i < plan->columns * plan->rows; i++)
+		wrong += !isfinite(plan->vertices[i].ux) || !isfinite(plan->vertices[i].uy);
+	CHECK_INT(wrong, 0);
+}
+
+static void test_anything(void)
+{
+	static const double phases[] = {-1.0, 0.0, 0.5, 1.0, 7.5, 8.0, 1e9, NAN};
+	static uint8_t pixels[STRIDE * HEIGHT];
+	struct engine *engine = make_engine(ENGINE_MOTION_QUADRATIC);
+	uint32_t seed = 11;
+	for (int round = 0; round < 200; round++) {
+		struct picture picture;
+		struct error error;
+		picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION);
+		const uint32_t patch = 1 + (picture_random(&seed) >> 8) % WIDTH;
+		for (uint32_t y = 0; y < HEIGHT; y++)
+			for (uint32_t x = 0; x < WIDTH; x += patch) {
+				const float mx = any_motion(&seed), my = any_motion(&seed);
+				for (uint32_t i = x; i < x + patch && i < WIDTH; i++)
+					picture_set_motion(&picture, i, y, mx, my);
+			}
+		struct pursuit_frame_header *header = &picture.frame.header;
+		header->frame_id = 1 + any_time(&seed) / 2;
+		header->time_ns = any_time(&seed);
+		header->real_interval_ns = any_time(&seed);
+		header->motion_interval_ns = any_time(&seed);
+		const struct engine_begin_params params = {
+			.n = 8, .last_phase = 8.0 * (round & 1), .real_interval_ns = round % 3 ? 0 : any_time(&seed)};
+		const struct engine_request request = {ENGINE_SHOW_IN_BETWEEN, phases[round % 8]};
+		struct engine_image image = {.data = pixels, .stride = STRIDE};
+		picture.frame.stream = 3;
+		CHECK_INT(engine_begin(engine, &picture.frame, &params, &error), 0);
+		check_finite(&engine->plan);
+		CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+		check_finite(&engine->plan);
+		picture_finish(&picture);
+	}
+	engine_destroy(&engine);
+}
+
+/* ---- what is kept of it ---- */
+
+/* Floats of large pictures as half floats, to the nearest; numbers beyond them as the largest. */
+static void test_motion_of_large_pictures(void)
+{
+	static const float values[][2] = {{1.0f, 1.0f},        {1.00048828125f, 1.0f}, {1.001f, 1.0009765625f},
+									  {-1e30f, -65504.0f}, {1e-30f, 0.0f},         {NAN, 0.0f}};
+	const struct plan_scale scale = {.ratio = 0.125f, .degrees = 0.0f};
+	struct plan_motion_plane plane = {0};
+	struct picture picture;
+	picture_init(&picture, 1024, 576, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION);
+	for (uint32_t i = 0; i < 6; i++)
+		picture_set_motion(&picture, i, 3, values[i][0], 2.0f);
+	CHECK(plan_motion_plane_take(&plane, &picture.frame, plan_level_kernels(plan_level_best())));
+	CHECK(plan_motion_plane_bytes(&plane) <= UINT64_C(4) * 1024 * 576 + 8192);
+	for (uint32_t i = 0; i < 6; i++) {
+		float ux, uy;
+		plan_motion_plane_get(&plane, i, 3, &scale, &ux, &uy);
+		CHECK(ux == 0.125f * values[i][1] && uy == (isnan(values[i][0]) ? 0.0f : 0.25f));
+	}
+	picture_finish(&picture);
+	plan_motion_plane_finish(&plane);
+}
+
 int main(void)
 {
 	RUN(test_motion_that_changes);
 	RUN(test_unchanged_frame_stood_still);
+	RUN(test_reasons);
+	RUN(test_times);
+	RUN(test_lost_frames);
+	RUN(test_anything);
+	RUN(test_motion_of_large_pictures);
 	return test_result();
 }

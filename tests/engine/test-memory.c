@@ -124,10 +124,7 @@ static void test_scenes(void)
 		check_scene(info->name);
 }
 
-/*
- * All planes, a UI everywhere, everything in motion, and settings that leave nothing out. What the quadratic model
- * keeps of the motion of the frame before, 12 bytes a pixel, comes on top of the bound.
- */
+/* All planes, a UI everywhere, everything in motion, and settings that leave nothing out. */
 static void check_worst(const char *name, const struct engine_params *params)
 {
 	struct run run = {.engine = make_with(*params), .width = 1920, .height = 1080};
@@ -146,8 +143,7 @@ static void check_worst(const char *name, const struct engine_params *params)
 	const uint64_t bytes = report->memory_bytes + report->plan_bytes;
 	printf("%s at 1920x1080: %.1f MB told, of which %.1f for the plan\n", name, (double)bytes * 1e-6,
 		   (double)report->plan_bytes * 1e-6);
-	const bool bends = params->motion_model == ENGINE_MOTION_QUADRATIC;
-	CHECK(bytes <= 60 * MB + (bends ? UINT64_C(12) * 1920 * 1080 : 0));
+	CHECK(bytes <= 60 * MB);
 	for (uint32_t i = 0; i < 2 * FRAMES; i++)
 		show(&run, i);
 	CHECK_INT((long)told(&run), (long)bytes);

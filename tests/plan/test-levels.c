@@ -96,6 +96,33 @@ static void test_every_half(void)
 	}
 }
 
+/* Each half and what lies between it and the next: to the nearest, ties to even. */
+static void test_to_half(void)
+{
+	static float values[4];
+	static uint16_t halves[4];
+	for (int level = 0; level < PLAN_LEVEL_COUNT; level++) {
+		const struct plan_kernels *kernels = plan_level_kernels((enum plan_level)level);
+		int wrong = 0;
+		for (uint32_t i = 0; kernels && i < 0x7bff; i++) {
+			const double here = half_value(i), there = half_value(i + 1), tie = (here + there) / 2.0;
+			const uint16_t even = (uint16_t)(i & 1 ? i + 1 : i);
+			values[0] = (float)here;
+			values[1] = nextafterf((float)tie, 0.0f);
+			values[2] = (float)-tie;
+			values[3] = nextafterf((float)tie, 1e9f);
+			kernels->encode_half(values, 4, halves);
+			wrong += halves[0] != i || halves[1] != i || halves[2] != (even | 0x8000u) || halves[3] != i + 1;
+		}
+		CHECK_INT(wrong, 0);
+		for (size_t i = 0; kernels && i < 4; i++) {
+			static const float odd[] = {65505.0f, -3e38f, INFINITY, NAN};
+			kernels->encode_half(&odd[i], 1, halves);
+			CHECK_INT(halves[0] & 0x7fff, i < 2 ? 0x7bff : 0x7e00);
+		}
+	}
+}
+
 static void test_any_bits(void)
 {
 	static uint32_t words[1500];
@@ -125,6 +152,7 @@ int main(void)
 {
 	RUN(test_the_best_is_there);
 	RUN(test_every_half);
+	RUN(test_to_half);
 	RUN(test_any_bits);
 	RUN(test_plans);
 	RUN(test_depths);

@@ -66,37 +66,59 @@ static struct vector alike(const struct reference_geometry *before, double x, do
 	return best;
 }
 
-static void bend_vertex(struct reference_vertex *vertex, const struct reference_geometry *before, double ratio)
+/* The motion, over the interval now, of what the frame before shows at a place; false outside it. */
+static bool look_up(const struct reference_geometry *before, double x, double y, double ratio,
+					const struct reference_vertex *vertex, struct vector *found, bool *open)
 {
-	const double x = vertex->x - vertex->ux, y = vertex->y - vertex->uy;
 	const bool near_border = fmin(fmin(x, y), fmin(before->width - x, before->height - y)) < OPEN;
-	bool open = near_border && fmax(fmax(-x, -y), fmax(x - before->width, y - before->height)) < OPEN;
-	if ((vertex->ux == 0.0 && vertex->uy == 0.0) || x < 0.0 || y < 0.0 || x >= before->width || y >= before->height) {
-		vertex->either |= open;
-		return;
-	}
+	*open |= near_border && fmax(fmax(-x, -y), fmax(x - before->width, y - before->height)) < OPEN;
+	if (x < 0.0 || y < 0.0 || x >= before->width || y >= before->height)
+		return false;
 	const double i = floor(fmin(fmax(x - 0.5, 0.0), before->width - 1.0));
 	const double j = floor(fmin(fmax(y - 0.5, 0.0), before->height - 1.0));
 	const double apart = unlike(before, i, j);
 	/* A place on a row or column of centres may be seen with the pixels on either side of it. */
 	if (fabs(x - 0.5 - round(x - 0.5)) < OPEN || fabs(y - 0.5 - round(y - 0.5)) < OPEN)
 		for (int k = 0; k < 9; k++)
-			open |= (unlike(before, i + k % 3 - 1, j + k / 3 - 1) > 1.0) != (apart > 1.0);
-	open |= fabs(apart - 1.0) < OPEN;
-	const struct vector v = apart <= 1.0 ? bilinear(before, x, y) : alike(before, x, y, ratio, vertex, &open);
-	const double weight = 2.0 * ratio / (ratio + 1.0);
-	const double ax = weight * (vertex->ux - ratio * v.x), ay = weight * (vertex->uy - ratio * v.y);
-	const double length = hypot(vertex->ux, vertex->uy), change = hypot(ax, ay);
-	vertex->either |= open || fabs(change - length / 2.0) < OPEN;
-	vertex->ax = change <= length / 2.0 ? ax : 0.0;
-	vertex->ay = change <= length / 2.0 ? ay : 0.0;
+			*open |= (unlike(before, i + k % 3 - 1, j + k / 3 - 1) > 1.0) != (apart > 1.0);
+	*open |= fabs(apart - 1.0) < OPEN;
+	const struct vector v = apart <= 1.0 ? bilinear(before, x, y) : alike(before, x, y, ratio, vertex, open);
+	*found = (struct vector){ratio * v.x, ratio * v.y};
+	return true;
+}
+
+static void bend_vertex(struct reference_vertex *vertex, const struct reference_geometry *before,
+						const struct reference_times *times)
+{
+	const double gap = times->gap_s / times->real_s, span = times->span_s / times->real_s;
+	const double weight = times->real_s / (times->gap_s + (times->span_before_s - times->span_s) / 2.0);
+	const double ratio = times->real_s / times->real_before_s;
+	struct vector change = {0.0, 0.0}, v;
+	bool open = false;
+	if (vertex->ux == 0.0 && vertex->uy == 0.0)
+		return;
+	for (int look = 0; look < (times->gap_s == times->span_s ? 1 : 2); look++) {
+		const double off = gap * (gap - span) / 2.0 * weight;
+		const double x = vertex->x - gap * vertex->ux + off * change.x;
+		const double y = vertex->y - gap * vertex->uy + off * change.y;
+		if (!look_up(before, x, y, ratio, vertex, &v, &open)) {
+			vertex->either |= open;
+			return;
+		}
+		change = (struct vector){vertex->ux - v.x, vertex->uy - v.y};
+	}
+	const double length = hypot(vertex->ux, vertex->uy), changed = hypot(change.x, change.y) * fmax(1.0, weight);
+	vertex->either |= open || fabs(changed - length / 2.0) < OPEN;
+	vertex->ax = changed <= length / 2.0 ? weight * change.x : 0.0;
+	vertex->ay = changed <= length / 2.0 ? weight * change.y : 0.0;
 }
 
 void reference_grid_bend(struct reference_grid *grid, const struct reference_geometry *now,
-						 const struct reference_geometry *before, double ratio)
+						 const struct reference_geometry *before, const struct reference_times *times)
 {
 	if (!now->known || !before->known || now->width != before->width || now->height != before->height)
 		return;
+	grid->span = times->span_s / times->real_s;
 	for (uint32_t i = 0; i < grid->columns * grid->rows; i++)
-		bend_vertex(&grid->vertices[i], before, ratio);
+		bend_vertex(&grid->vertices[i], before, times);
 }

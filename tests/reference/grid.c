@@ -214,7 +214,7 @@ static void place(struct reference_grid *grid, const struct reference_geometry *
 
 void reference_displaced(const struct reference_grid *grid, const uint32_t v[3], double phase, double x[3], double y[3])
 {
-	const double bend = phase * (phase + 1.0) / 2.0;
+	const double bend = phase * (phase + grid->span) / 2.0;
 	for (int k = 0; k < 3; k++) {
 		x[k] = grid->vertices[v[k]].x + phase * grid->vertices[v[k]].ux + bend * grid->vertices[v[k]].ax;
 		y[k] = grid->vertices[v[k]].y + phase * grid->vertices[v[k]].uy + bend * grid->vertices[v[k]].ay;

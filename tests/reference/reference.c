@@ -89,10 +89,11 @@ void reference_begin(struct reference *reference, const struct frame *frame, con
 	fill_pictures(reference);
 }
 
-void reference_bend(struct reference *reference, const struct reference *before)
+void reference_bend(struct reference *reference, const struct reference *before, double gap_s)
 {
-	reference_grid_bend(&reference->grid, &reference->geometry, &before->geometry,
-						reference->timing.real_s / before->timing.real_s);
+	const struct reference_times times = {reference->timing.real_s, reference->timing.motion_s, before->timing.real_s,
+										  before->timing.motion_s, gap_s};
+	reference_grid_bend(&reference->grid, &reference->geometry, &before->geometry, &times);
 	fill_weight(reference);
 	fill_pictures(reference);
 }

@@ -101,6 +101,7 @@ struct reference_triangle {
 struct reference_grid {
 	uint32_t columns, rows;
 	struct reference_vertex *vertices;
+	double span; /* S / T [10]; 0: no vertex has a change */
 	uint32_t triangle_count;
 	struct reference_triangle *triangles; /* two a quad, in drawing order */
 	uint32_t snapped;
@@ -110,9 +111,13 @@ uint32_t reference_discontinuity(const struct reference_geometry *geometry, uint
 								 double *gy);
 void reference_grid_init(struct reference_grid *grid, const struct reference_geometry *geometry, uint32_t cell,
 						 uint32_t threshold_quarter);
-/* Change of motion at the vertices from the frame before [10]; `ratio`: T / T'. */
+/* How two frames lie in time [10]: T, S, T', S', and D from one to the other. */
+struct reference_times {
+	double real_s, span_s, real_before_s, span_before_s, gap_s;
+};
+/* Change of motion at the vertices from the frame before [10]. */
 void reference_grid_bend(struct reference_grid *grid, const struct reference_geometry *now,
-						 const struct reference_geometry *before, double ratio);
+						 const struct reference_geometry *before, const struct reference_times *times);
 void reference_grid_finish(struct reference_grid *grid);
 /* Corner of a triangle at a phase, and its doubled signed area there. */
 void reference_displaced(const struct reference_grid *grid, const uint32_t v[3], double phase, double x[3],
@@ -181,8 +186,10 @@ struct reference {
 /* `reference` zeroed or begun before. Frame validated. Aborts without memory: it is a test. */
 void reference_begin(struct reference *reference, const struct frame *frame, const struct engine_params *params,
 					 const struct engine_begin_params *begin);
-/* The quadratic motion model [10]: `before` was begun with the frame before. After reference_begin(). */
-void reference_bend(struct reference *reference, const struct reference *before);
+/*
+ * The quadratic motion model [10]: `before` was begun with a frame that lies gap_s before. After reference_begin().
+ */
+void reference_bend(struct reference *reference, const struct reference *before, double gap_s);
 void reference_finish(struct reference *reference);
 /* Phase of a request as it counts: NaN 0, -1 to 8; 0 for what is shown undisplaced. */
 double reference_phase(const struct engine_request *request);

@@ -274,14 +274,32 @@ static void turn(const struct input *input)
 		}
 }
 
+/* How the two frames lie in time, ns: T as the pacer knows it; S' and S; from one to the other, frames lost between. */
+struct times {
+	uint64_t real, span_before, span, gap;
+	uint32_t lost;
+};
+
+static void put_times(struct input *before, struct input *now, const struct times *times)
+{
+	struct pursuit_frame_header *first = &before->frame.header, *second = &now->frame.header;
+	first->frame_id = 5;
+	second->frame_id = 6 + times->lost;
+	first->time_ns = 1000000000;
+	second->time_ns = first->time_ns + times->gap;
+	first->real_interval_ns = first->motion_interval_ns = times->span_before;
+	second->motion_interval_ns = times->span;
+	second->real_interval_ns = times->lost ? times->span : times->gap;
+}
+
 static void check_bent(const struct input *before, const struct input *now, const struct engine_params *params,
-					   struct bounds_report *report)
+					   const struct times *times, struct bounds_report *report)
 {
 	static const struct engine_request requests[] = {{ENGINE_SHOW_REAL, 0.0},
 													 {ENGINE_SHOW_IN_BETWEEN, 1.0 / 3},
 													 {ENGINE_SHOW_IN_BETWEEN, 2.0 / 3},
 													 {ENGINE_SHOW_REAL, 0.3}};
-	const struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
+	const struct engine_begin_params begin = {.n = 3, .last_phase = -1.0, .real_interval_ns = times->real};
 	struct reference reference = {0}, previous = {0};
 	struct bounds bounds;
 	struct error error = {""};
@@ -289,7 +307,7 @@ static void check_bent(const struct input *before, const struct input *now, cons
 	CHECK_INT(engine_begin(engine, &now->frame, &begin, &error), 0);
 	reference_begin(&reference, &now->frame, params, &begin);
 	reference_begin(&previous, &before->frame, params, &begin);
-	reference_bend(&reference, &previous);
+	reference_bend(&reference, &previous, (double)times->gap * 1e-9);
 	bounds_init(&bounds, &reference);
 	uint8_t *pixels = reference_alloc((size_t)reference.width * reference.height, 4);
 	for (size_t i = 0; i < 4; i++) {
@@ -306,6 +324,11 @@ static void check_bent(const struct input *before, const struct input *now, cons
 
 static void test_quadratic(void)
 {
+	static const struct times cases[] = {{0, 16666667, 16666667, 16666667, 0},
+										 {0, 16666667, 16666667, 33333333, 1},
+										 {15000000, 12000000, 20000000, 20000000, 0},
+										 {33333333, 8000000, 16666667, 33333333, 0},
+										 {0, 16666667, 16666667, 66666667, 3}};
 	struct bounds_report all = {0};
 	for (size_t f = 0; f < FIELDS; f++) {
 		struct input before, now;
@@ -322,7 +345,9 @@ static void test_quadratic(void)
 		turn(&before);
 		CHECK_INT(engine_set_params(engine, &(struct engine_params){.method = "hold"}, &error), 0);
 		CHECK_INT(engine_set_params(engine, &params, &error), 0);
-		check_bent(&before, &now, &params, &report);
+		const struct times *times = &cases[f % (sizeof(cases) / sizeof(cases[0]))];
+		put_times(&before, &now, times);
+		check_bent(&before, &now, &params, times, &report);
 		if (report.outside)
 			fprintf(stderr, "quadratic, field %zu: %llu pixels outside, worst by %.2f steps at (%u, %u)\n", f,
 					(unsigned long long)report.outside, report.worst, report.worst_x, report.worst_y);

@@ -17,12 +17,18 @@ static const char *const models[] = {"linear", "quadratic"};
 
 static struct table table;
 
-static double error_of(enum motion_path path, enum engine_motion_model model, double interval, double phase)
+static double error_after(enum motion_path path, enum engine_motion_model model, double interval, uint32_t gap,
+						  double phase)
 {
 	struct error error = {""};
-	const double worst = motion_order_error(path, model, interval, phase, &error);
+	const double worst = motion_order_error(path, model, interval, gap, phase, &error);
 	CHECK_STRING(error.text, "");
 	return worst;
+}
+
+static double error_of(enum motion_path path, enum engine_motion_model model, double interval, double phase)
+{
+	return error_after(path, model, interval, 1, phase);
 }
 
 /* What is left where the model is exact: floats of some pixels. */
@@ -51,6 +57,18 @@ static void test_cubic(void)
 		}
 }
 
+/* Frames between the two were lost: exact where it was, and the formula's error where it was not. */
+static void test_lost_frames(void)
+{
+	for (uint32_t gap = 2; gap <= 6; gap++)
+		for (size_t s = 0; s < 5; s++) {
+			const double p = steps[s], t = 1.0 / 240, cube = t * t * t;
+			const double cubic = p * (p + 1.0) * (2.0 * p + 3.0 * gap + 1.0) / 12.0 * cube * hypot(4000.0, 2000.0);
+			CHECK_NEAR(error_after(MOTION_PATH_PARABOLA, ENGINE_MOTION_QUADRATIC, t, gap, p), 0.0, FLOAT_NOISE);
+			CHECK_NEAR(error_after(MOTION_PATH_CUBIC, ENGINE_MOTION_QUADRATIC, t, gap, p), cubic, FLOAT_NOISE);
+		}
+}
+
 /* Halving the interval divides by 4 and by 8; the fan has terms of higher order, which vanish with the interval. */
 static void test_order_of_convergence(void)
 {
@@ -66,6 +84,20 @@ static void test_order_of_convergence(void)
 						 steps[s], 1.0 / intervals[t - 1], 1.0 / intervals[t]);
 				table_add(&table, what, fabs(order - want), "order", 0.01);
 			}
+}
+
+/* The same with a frame lost between the two: what is where at the older one's moment is found well enough. */
+static void test_order_after_a_loss(void)
+{
+	for (size_t s = 0; s < 5; s++)
+		for (size_t t = 2; t < 4; t++) {
+			const double coarse = error_after(MOTION_PATH_FAN, ENGINE_MOTION_QUADRATIC, intervals[t - 1], 2, steps[s]);
+			const double fine = error_after(MOTION_PATH_FAN, ENGINE_MOTION_QUADRATIC, intervals[t], 2, steps[s]);
+			char what[96];
+			snprintf(what, sizeof(what), "fan quadratic, a frame lost, step %.3g, interval 1/%.0f to 1/%.0f: order",
+					 steps[s], 1.0 / intervals[t - 1], 1.0 / intervals[t]);
+			table_add(&table, what, fabs(log2(coarse / fine) - 3.0), "order", 0.01);
+		}
 }
 
 /* At a fixed interval the error follows p (p + 1) and p (p + 1)(p + 2), not p and p^2: backward motion is a secant. */
@@ -106,7 +138,9 @@ int main(int argc, char **argv)
 	table_init(&table, "order", "plan");
 	RUN(test_parabola);
 	RUN(test_cubic);
+	RUN(test_lost_frames);
 	RUN(test_order_of_convergence);
+	RUN(test_order_after_a_loss);
 	RUN(test_step);
 	print_table();
 	CHECK(table_finish(&table, argc, argv));

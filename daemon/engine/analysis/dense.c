@@ -91,21 +91,17 @@ static int fill(struct plan_dense *dense, const struct frame *frame, const struc
 {
 	const struct plan_kernels *kernels = plan_level_kernels(plan_level_best());
 	struct plan_intervals intervals = plan_intervals_of(&frame->header, params->real_interval_ns);
-	dense->real_interval_s = (double)intervals.real * 1e-9;
 	dense->rest = plan_rest_of(frame, &intervals);
-	/* What its motion plane says is of a frame before. */
-	if (params->unchanged && dense->rest == PLAN_MOVES)
-		dense->rest = PLAN_STILL;
-	dense->backward = frame->header.motion_kind == PURSUIT_MOTION_BACKWARD;
 	dense->invalid_pixels = 0;
-	if (reserve(dense) < 0 || (!params->unchanged && read_depth(dense, kernels, frame) < 0))
+	if (reserve(dense) < 0 || read_depth(dense, kernels, frame) < 0)
 		return -ENOMEM;
 	if (dense->rest != PLAN_MOVES) {
 		memset(dense->ux, 0, 2 * (size_t)dense->width * dense->height * sizeof(float));
 		return 0;
 	}
 	struct plan_motion motion = {.kernels = kernels};
-	motion.scale = plan_scale_make(dense->real_interval_s, (double)intervals.motion * 1e-9, dense->width, params);
+	motion.scale =
+		plan_scale_make((double)intervals.real * 1e-9, (double)intervals.motion * 1e-9, dense->width, params);
 	return read_motion(dense, &motion, frame);
 }
 

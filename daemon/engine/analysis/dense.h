@@ -2,8 +2,7 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Displacement and depth at every pixel (docs/method.md, 1), kept: for methods
- * that work pixel by pixel and for those that ask how things moved one frame ago.
+ * Displacement and depth at every pixel (docs/method.md, 1), kept: for methods that work pixel by pixel.
  */
 #ifndef PURSUIT_ANALYSIS_DENSE_H
 #define PURSUIT_ANALYSIS_DENSE_H
@@ -16,8 +15,6 @@
 struct plan_dense {
 	uint32_t width, height; /* of colour */
 	enum plan_rest rest;    /* why `ux` and `uy` are 0 all over; PLAN_MOVES: some are not */
-	bool backward;          /* the motion led from the frame before */
-	double real_interval_s; /* T that u is for, 0 unknown */
 	float *ux, *uy;         /* pixels per T, width x height, rows packed */
 	float *z;               /* 0 near to 1, the same */
 	uint64_t invalid_pixels;
@@ -30,8 +27,7 @@ struct plan_dense {
 
 /*
  * Fills it from a frame: cell, threshold and phase of the params do not matter. Reads the planes as plan_make() does,
- * the same bits come out; but of a frame that is unchanged none is read: it stood still, and its z are undefined. 0 or
- * -ENOMEM with a sentence. Any thread, one at a time.
+ * the same bits come out. 0 or -ENOMEM with a sentence. Any thread, one at a time.
  */
 int plan_dense_make(struct plan_dense *dense, const struct frame *frame, const struct plan_params *params,
 					struct error *error);

@@ -38,6 +38,12 @@ static void decode_half(const uint16_t *restrict halves, size_t count, float *re
 		values[i] = plan_half_value(halves[i]);
 }
 
+static void encode_half(const float *restrict values, size_t count, uint16_t *restrict halves)
+{
+	for (size_t i = 0; i < count; i++)
+		halves[i] = plan_half_of(values[i]);
+}
+
 static uint32_t scale_row(const float *restrict motion, size_t count, const struct plan_scale *scale,
 						  float *restrict ux, float *restrict uy)
 {
@@ -55,40 +61,13 @@ static uint32_t scale_row(const float *restrict motion, size_t count, const stru
 	return odd | (any & 0x7fffffffu ? PLAN_ROW_MOVES : 0u);
 }
 
-static inline float clamped(float value, float limit)
-{
-	value = value < limit ? value : limit;
-	return value > -limit ? value : -limit;
-}
-
-/* The tracking factor f (docs/method.md, 1). */
-static inline float tracking(float speed)
-{
-	float t = (speed - 70.0f) / 20.0f;
-	t = t > 0.0f ? t : 0.0f;
-	t = t < 1.0f ? t : 1.0f;
-	return 1.0f - t * t * (3.0f - 2.0f * t);
-}
-
-static inline uint32_t is_finite(float value)
-{
-	return (plan_bits_of(value) & 0x7f800000u) != 0x7f800000u;
-}
-
 static uint32_t careful_row(const float *restrict motion, size_t count, const struct plan_scale *scale,
 							float *restrict ux, float *restrict uy, uint64_t *invalid)
 {
-	const float ratio = scale->ratio, degrees = scale->degrees;
 	uint32_t any = 0, numbers = 0;
 	for (size_t i = 0; i < count; i++) {
-		float x = motion[2 * i], y = motion[2 * i + 1];
-		uint32_t finite = is_finite(x) & is_finite(y);
-		numbers += finite;
-		x = clamped(finite ? x : 0.0f, 65504.0f);
-		y = clamped(finite ? y : 0.0f, 65504.0f);
-		float f = tracking(sqrtf(x * x + y * y) * degrees);
-		x = clamped(f * (ratio * x), 16384.0f);
-		y = clamped(f * (ratio * y), 16384.0f);
+		float x, y;
+		numbers += plan_displacement(motion[2 * i], motion[2 * i + 1], scale, &x, &y);
 		any |= plan_bits_of(x) | plan_bits_of(y);
 		ux[i] = x;
 		uy[i] = y;
@@ -344,6 +323,7 @@ const struct plan_kernels LEVEL_KERNELS = {
 	.name = LEVEL_NAME,
 	.any_bits = any_bits,
 	.decode_half = decode_half,
+	.encode_half = encode_half,
 	.scale_row = scale_row,
 	.careful_row = careful_row,
 	.band_peaks = band_peaks,

@@ -77,6 +77,8 @@ struct plan_kernels {
 	/* Any bit of the words set, but for those that mask leaves out? */
 	bool (*any_bits)(const uint32_t *words, size_t count, uint32_t mask);
 	void (*decode_half)(const uint16_t *halves, size_t count, float *values);
+	/* To the nearest, ties to even; numbers beyond the largest half become that one, what is no number stays none. */
+	void (*encode_half)(const float *values, size_t count, uint16_t *halves);
 	/* u of count pixels from interleaved motion, PLAN_ROW_* given back. */
 	uint32_t (*scale_row)(const float *motion, size_t count, const struct plan_scale *scale, float *ux, float *uy);
 	/* The same for any bits; *invalid grows by the number of pixels that are no numbers. */

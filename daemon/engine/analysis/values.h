@@ -5,6 +5,7 @@
 #ifndef PURSUIT_ANALYSIS_VALUES_H
 #define PURSUIT_ANALYSIS_VALUES_H
 
+#include <math.h>
 #include <string.h>
 
 #include "daemon/engine/analysis/levels.h"
@@ -32,6 +33,54 @@ static inline float plan_half_value(uint32_t half)
 	float tiny = plan_float_of(shifted + (113u << 23)) - plan_float_of(113u << 23);
 	uint32_t bits = exponent == 0 ? plan_bits_of(tiny) : normal;
 	return plan_float_of(bits | (half & 0x8000u) << 16);
+}
+
+/* To the nearest, ties to even; beyond the largest half that one, and NaN of what is no number. No branches. */
+static inline uint16_t plan_half_of(float value)
+{
+	const uint32_t bits = plan_bits_of(value), sign = bits & 0x80000000u;
+	uint32_t magnitude = bits & 0x7fffffffu;
+	const uint32_t none = magnitude >= 0x7f800000u;
+	magnitude = magnitude < 0x477fe000u ? magnitude : 0x477fe000u; /* 65504 */
+	/* A power of two 13 bits above the lowest one that stays rounds the others away when it is added. */
+	uint32_t exponent = magnitude & 0x7f800000u;
+	exponent = exponent > 113u << 23 ? exponent : 113u << 23;
+	const float rounder = plan_float_of(exponent + (13u << 23));
+	const uint32_t rounded = plan_bits_of(plan_float_of(magnitude) + rounder) - plan_bits_of(rounder);
+	const uint32_t half = rounded + ((exponent - (113u << 23)) >> 13);
+	return (uint16_t)(none ? 0x7e00u : sign >> 16 | half);
+}
+
+static inline float plan_clamped(float value, float limit)
+{
+	value = value < limit ? value : limit;
+	return value > -limit ? value : -limit;
+}
+
+/* The tracking factor f (docs/method.md, 1). */
+static inline float plan_tracking(float speed)
+{
+	float t = (speed - 70.0f) / 20.0f;
+	t = t > 0.0f ? t : 0.0f;
+	t = t < 1.0f ? t : 1.0f;
+	return 1.0f - t * t * (3.0f - 2.0f * t);
+}
+
+static inline uint32_t plan_is_finite(float value)
+{
+	return (plan_bits_of(value) & 0x7f800000u) != 0x7f800000u;
+}
+
+/* u of one motion (docs/method.md, 1), any bits; 0 if that is no number, else 1. */
+static inline uint32_t plan_displacement(float x, float y, const struct plan_scale *scale, float *ux, float *uy)
+{
+	const uint32_t finite = plan_is_finite(x) & plan_is_finite(y);
+	x = plan_clamped(finite ? x : 0.0f, 65504.0f);
+	y = plan_clamped(finite ? y : 0.0f, 65504.0f);
+	const float f = plan_tracking(sqrtf(x * x + y * y) * scale->degrees);
+	*ux = plan_clamped(f * (scale->ratio * x), 16384.0f);
+	*uy = plan_clamped(f * (scale->ratio * y), 16384.0f);
+	return finite;
 }
 
 static inline float plan_depth_decode16(uint32_t raw)
