@@ -247,6 +247,9 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 		return;
 	render->unanswered.pictures = 0;
 	showing_flip(&render->showing, flip);
+	/* One that came on display while all sleeps: the time since is no vblanks that were due. */
+	if (render->paused)
+		render->showing.last_target_ns = 0;
 	tees_flip(&render->tees, flip, &render->grid);
 	if (lab_is_active(render->lab))
 		tell_lab(render, flip);

@@ -229,6 +229,7 @@ static void kms_pause(struct presenter *presenter)
 	struct kms *kms = kms_of(presenter);
 	pthread_mutex_lock(&kms->lock);
 	kms->running = false;
+	scanout_pause(&kms->scanout);
 	pthread_mutex_unlock(&kms->lock);
 }
 

@@ -203,7 +203,8 @@ static void on_sequence(int fd, uint64_t sequence, uint64_t time_ns, uint64_t da
 static void on_flip(int fd, unsigned sequence, unsigned seconds, unsigned microseconds, void *data)
 {
 	const struct kms_device *device = data;
-	device->events->flipped(device->events->data, sequence);
+	device->events->flipped(device->events->data, sequence,
+							seconds * UINT64_C(1000000000) + microseconds * UINT64_C(1000));
 }
 
 int kms_device_read_events(struct kms_device *device, const struct kms_events *events)

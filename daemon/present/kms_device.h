@@ -50,8 +50,8 @@ struct kms_buffer {
 struct kms_events {
 	/* Vblank `sequence` was at time_ns. */
 	void (*vblank)(void *data, uint64_t sequence, uint64_t time_ns);
-	/* The flip happened at vblank `sequence`. */
-	void (*flipped)(void *data, uint64_t sequence);
+	/* The flip happened at vblank `sequence`, which was at time_ns. */
+	void (*flipped)(void *data, uint64_t sequence, uint64_t time_ns);
 	void *data;
 };
 

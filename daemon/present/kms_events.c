@@ -23,7 +23,7 @@ static uint64_t now_of(const struct kms *kms)
 
 static void keep_reports(struct kms *kms, const struct presenter_flip *reports, uint32_t count)
 {
-	for (uint32_t i = 0; i < count && kms->running && kms->report_count < KMS_REPORTS; i++)
+	for (uint32_t i = 0; i < count && !kms->lost && kms->report_count < KMS_REPORTS; i++)
 		kms->reports[kms->report_count++] = reports[i];
 }
 
@@ -111,13 +111,19 @@ static void on_vblank(void *data, uint64_t sequence, uint64_t time_ns)
 	kms->asks = true;
 }
 
-static void on_flipped(void *data, uint64_t sequence)
+static void on_flipped(void *data, uint64_t sequence, uint64_t time_ns)
 {
 	struct kms *kms = data;
 	struct presenter_flip reports[2];
 	/* The kernel's flips carry the lower half of the count. */
 	const int32_t ahead = (int32_t)((uint32_t)sequence - (uint32_t)kms->sequence);
-	keep_reports(kms, reports, scanout_flipped(&kms->scanout, kms->number + (uint64_t)(int64_t)ahead, reports));
+	const uint64_t vblank = kms->number + (uint64_t)(int64_t)ahead;
+	const struct presenter_flip flip = {.vblank = vblank,
+										.target_ns = grid_time(&kms->grid, vblank),
+										.flip_ns = time_ns,
+										.sequence = kms->sequence + (uint64_t)(int64_t)ahead,
+										.time_source = PRESENTER_TIME_KERNEL};
+	keep_reports(kms, reports, scanout_flipped(&kms->scanout, &flip, reports));
 }
 
 /* While another console is on display: nobody sees it. */
@@ -131,7 +137,7 @@ static void tick(struct kms *kms)
 										.time_source = PRESENTER_TIME_TIMER};
 	kms->number = kms->chosen = vblank;
 	if (scanout_choose(&kms->scanout, vblank) >= 0)
-		keep_reports(kms, reports, scanout_flipped(&kms->scanout, vblank, reports));
+		keep_reports(kms, reports, scanout_flipped(&kms->scanout, &flip, reports));
 	keep_reports(kms, reports, scanout_vblank(&kms->scanout, &flip, reports));
 }
 

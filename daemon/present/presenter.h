@@ -196,7 +196,7 @@ struct presenter_impl {
 	void (*set_standby)(struct presenter *presenter, const struct presenter_image *image, uint64_t group,
 						uint64_t serial);
 	void (*clear_standby)(struct presenter *presenter);
-	/* The picture stays, no vblank is reported until the next present(). */
+	/* The picture stays, no vblank is reported until the next present() but that of a picture which is on its way. */
 	void (*pause)(struct presenter *presenter);
 	/*
 	 * Optional, both or none: a descriptor that is readable when process_events() has something to do, which may

@@ -10,8 +10,13 @@ static bool is_same(const struct scanout_picture *picture, const struct flips_pi
 
 void scanout_start(struct scanout *scanout, uint64_t vblank)
 {
-	scanout->is_waiting = false;
-	scanout->next_vblank = vblank;
+	scanout->is_waiting = scanout->paused = false;
+	scanout->next_vblank = vblank > scanout->told ? vblank : scanout->told;
+}
+
+void scanout_pause(struct scanout *scanout)
+{
+	scanout->paused = true;
 }
 
 int scanout_choose(struct scanout *scanout, uint64_t vblank)
@@ -43,13 +48,19 @@ void scanout_failed(struct scanout *scanout)
 static void report(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip *out)
 {
 	*out = *flip;
-	out->skipped = (uint32_t)(flip->vblank - scanout->next_vblank);
 	out->serial = scanout->shown.any ? scanout->shown.serial : 0;
 	out->group = scanout->shown.any ? scanout->shown.group : 0;
 	out->shown = scanout->fresh ? scanout->fresh_as : PRESENTER_KEPT;
-	/* Or it came on display in time while nothing was reported. */
-	out->late = scanout->fresh && (scanout->fresh_late || scanout->next_vblank > scanout->fresh_wanted);
+	out->late = scanout->fresh && scanout->fresh_late;
+	out->skipped = 0;
 	scanout->fresh = false;
+	scanout->told = flip->vblank + 1;
+}
+
+static void report_next(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip *out)
+{
+	report(scanout, flip, out);
+	out->skipped = (uint32_t)(flip->vblank - scanout->next_vblank);
 	scanout->next_vblank = flip->vblank + 1;
 }
 
@@ -58,16 +69,26 @@ static uint32_t report_waiting(struct scanout *scanout, struct presenter_flip *o
 	if (!scanout->is_waiting)
 		return 0;
 	scanout->is_waiting = false;
-	report(scanout, &scanout->waiting, out);
+	report_next(scanout, &scanout->waiting, out);
 	return 1;
 }
 
-uint32_t scanout_flipped(struct scanout *scanout, uint64_t vblank, struct presenter_flip reports[2])
+/* No report of its vblank will follow: it was in a pause. */
+static uint32_t report_in_pause(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip *out)
+{
+	const bool is_before = scanout->paused || flip->vblank < scanout->next_vblank;
+	if (!scanout->fresh || !is_before || flip->vblank < scanout->told)
+		return 0;
+	report(scanout, flip, out);
+	return 1;
+}
+
+uint32_t scanout_flipped(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip reports[2])
 {
 	uint32_t count = 0;
 	if (!scanout->under_way.any)
 		return 0;
-	if (scanout->is_waiting && scanout->waiting.vblank < vblank)
+	if (scanout->is_waiting && scanout->waiting.vblank < flip->vblank)
 		count = report_waiting(scanout, reports);
 	if (scanout->shown.any)
 		flips_release(&scanout->flips, scanout->shown.image);
@@ -76,8 +97,9 @@ uint32_t scanout_flipped(struct scanout *scanout, uint64_t vblank, struct presen
 	scanout->fresh = true;
 	scanout->fresh_as = scanout->under_way_as;
 	scanout->fresh_wanted = scanout->under_way_wanted;
-	scanout->fresh_late = vblank > scanout->fresh_wanted;
-	return count + report_waiting(scanout, reports + count);
+	scanout->fresh_late = flip->vblank > scanout->fresh_wanted;
+	count += report_waiting(scanout, reports + count);
+	return count + report_in_pause(scanout, flip, reports + count);
 }
 
 uint32_t scanout_vblank(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip reports[2])
@@ -90,6 +112,6 @@ uint32_t scanout_vblank(struct scanout *scanout, const struct presenter_flip *fl
 		scanout->is_waiting = true;
 		return count;
 	}
-	report(scanout, flip, reports + count);
+	report_next(scanout, flip, reports + count);
 	return count + 1;
 }

@@ -41,11 +41,16 @@ struct scanout {
 	enum presenter_shown fresh_as;
 	struct presenter_flip waiting; /* a vblank whose flip has not been heard of */
 	bool is_waiting;
-	uint64_t next_vblank; /* the first that was not reported */
+	uint64_t next_vblank; /* the first that is to be reported */
+	uint64_t told;        /* reports so far were of vblanks below this one */
+	bool paused;
 };
 
-/* Reports begin at this vblank; one that is still waited for is given up, and a picture not reported yet is late. */
+/* Reports begin at this vblank; one that is still waited for is given up. */
 void scanout_start(struct scanout *scanout, uint64_t vblank);
+
+/* Until scanout_start() no vblank is reported but one at which a picture comes on display that was under way. */
+void scanout_pause(struct scanout *scanout);
 
 /*
  * The picture for a vblank that is close: flip to this image now. It counts as under way until scanout_flipped() or
@@ -59,10 +64,11 @@ void scanout_failed(struct scanout *scanout);
 
 /* Both give the reports that are due now: at most 2, in the order of vblanks. */
 
-/* The flip under way happened at this vblank. */
-uint32_t scanout_flipped(struct scanout *scanout, uint64_t vblank, struct presenter_flip reports[2]);
+/* The flip under way happened at a vblank. Of `flip` vblank, target_ns, flip_ns, sequence, time_source are taken over.
+ */
+uint32_t scanout_flipped(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip reports[2]);
 
-/* A vblank came: vblank, target_ns, flip_ns, sequence and time_source of `flip` are taken over. */
+/* A vblank came; `flip` likewise. */
 uint32_t scanout_vblank(struct scanout *scanout, const struct presenter_flip *flip, struct presenter_flip reports[2]);
 
 #endif

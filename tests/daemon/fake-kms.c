@@ -114,11 +114,11 @@ int kms_device_read_events(struct kms_device *device, const struct kms_events *e
 	if (old)
 		events->vblank(events->data, sequence - 3, time_of(device, sequence - 3));
 	if (old)
-		events->flipped(events->data, flip_at);
+		events->flipped(events->data, flip_at, time_of(device, flip_at));
 	if (wanted != 0 && sequence >= wanted)
 		events->vblank(events->data, sequence, time_of(device, sequence));
 	if (ended && !old)
-		events->flipped(events->data, flip_at);
+		events->flipped(events->data, flip_at, time_of(device, flip_at));
 	return 0;
 }
 

@@ -21,6 +21,12 @@ static uint32_t vblank_comes(struct scanout *scanout, uint64_t vblank, struct pr
 	return scanout_vblank(scanout, &flip, reports);
 }
 
+static uint32_t flip_ends(struct scanout *scanout, uint64_t vblank, struct presenter_flip reports[2])
+{
+	const struct presenter_flip flip = {.vblank = vblank, .target_ns = vblank * 100, .flip_ns = vblank * 100 + 3};
+	return scanout_flipped(scanout, &flip, reports);
+}
+
 static void expect(const struct presenter_flip *flip, uint64_t vblank, enum presenter_shown shown, uint64_t serial,
 				   bool late)
 {
@@ -47,13 +53,13 @@ static void test_either_order(void)
 	scanout_start(&scanout, 5);
 	const uint32_t first = queue(&scanout, 5, 1, 1), second = queue(&scanout, 6, 1, 2);
 	CHECK_INT(scanout_choose(&scanout, 5), first);
-	CHECK_INT(scanout_flipped(&scanout, 5, reports), 0);
+	CHECK_INT(flip_ends(&scanout, 5, reports), 0);
 	CHECK_INT(vblank_comes(&scanout, 5, reports), 1);
 	expect(&reports[0], 5, PRESENTER_PICTURE, 1, false);
 	CHECK_INT(scanout_choose(&scanout, 6), second);
 	CHECK_INT(in_use(&scanout), 2); /* one on display, one under way */
 	CHECK_INT(vblank_comes(&scanout, 6, reports), 0);
-	CHECK_INT(scanout_flipped(&scanout, 6, reports), 1);
+	CHECK_INT(flip_ends(&scanout, 6, reports), 1);
 	expect(&reports[0], 6, PRESENTER_PICTURE, 2, false);
 	CHECK_INT(in_use(&scanout), 1);
 	CHECK_INT(scanout_choose(&scanout, 7), -1);
@@ -70,7 +76,7 @@ static void test_missed_flip(void)
 	struct presenter_flip reports[2];
 	queue(&scanout, 0, 1, 1);
 	scanout_choose(&scanout, 0);
-	scanout_flipped(&scanout, 0, reports);
+	flip_ends(&scanout, 0, reports);
 	vblank_comes(&scanout, 0, reports);
 	queue(&scanout, 1, 1, 2);
 	queue(&scanout, 2, 2, 3); /* a real frame */
@@ -78,12 +84,12 @@ static void test_missed_flip(void)
 	CHECK_INT(vblank_comes(&scanout, 1, reports), 0);
 	CHECK_INT(scanout_choose(&scanout, 2), -1); /* under way still */
 	CHECK_INT(in_use(&scanout), 3);
-	CHECK_INT(scanout_flipped(&scanout, 2, reports), 1);
+	CHECK_INT(flip_ends(&scanout, 2, reports), 1);
 	expect(&reports[0], 1, PRESENTER_KEPT, 1, false);
 	CHECK_INT(vblank_comes(&scanout, 2, reports), 1);
 	expect(&reports[0], 2, PRESENTER_PICTURE, 2, true);
 	CHECK(scanout_choose(&scanout, 3) >= 0);
-	scanout_flipped(&scanout, 3, reports);
+	flip_ends(&scanout, 3, reports);
 	CHECK_INT(vblank_comes(&scanout, 3, reports), 1);
 	expect(&reports[0], 3, PRESENTER_PICTURE, 3, true);
 	CHECK_INT(reports[0].group, 2);
@@ -100,7 +106,7 @@ static void test_silent_flip(void)
 	CHECK_INT(vblank_comes(&scanout, 0, reports), 0);
 	CHECK_INT(vblank_comes(&scanout, 1, reports), 1);
 	expect(&reports[0], 0, PRESENTER_KEPT, 0, false);
-	CHECK_INT(scanout_flipped(&scanout, 1, reports), 1);
+	CHECK_INT(flip_ends(&scanout, 1, reports), 1);
 	expect(&reports[0], 1, PRESENTER_PICTURE, 1, true);
 }
 
@@ -114,30 +120,54 @@ static void test_refused_flip(void)
 	CHECK_INT(vblank_comes(&scanout, 0, reports), 1);
 	expect(&reports[0], 0, PRESENTER_KEPT, 0, false);
 	CHECK_INT(scanout_choose(&scanout, 1), image); /* tried again */
-	scanout_flipped(&scanout, 1, reports);
+	flip_ends(&scanout, 1, reports);
 	CHECK_INT(vblank_comes(&scanout, 1, reports), 1);
 	expect(&reports[0], 1, PRESENTER_PICTURE, 1, true);
 }
 
-/* What came on display while nothing was reported is reported with the first vblank afterwards: late. */
+/* What comes on display in a pause is reported with that vblank, once, in the order of vblanks. */
 static void test_flip_in_a_pause(void)
 {
 	struct scanout scanout = {0};
 	struct presenter_flip reports[2];
 	queue(&scanout, 1, 1, 1);
 	scanout_choose(&scanout, 1);
-	scanout_flipped(&scanout, 1, reports);
+	scanout_pause(&scanout);
+	CHECK_INT(flip_ends(&scanout, 7, reports), 1);
+	expect(&reports[0], 7, PRESENTER_PICTURE, 1, true);
+	CHECK_INT(reports[0].skipped, 0);
 	scanout_start(&scanout, 9);
 	CHECK_INT(vblank_comes(&scanout, 9, reports), 1);
-	expect(&reports[0], 9, PRESENTER_PICTURE, 1, true);
+	expect(&reports[0], 9, PRESENTER_KEPT, 1, false);
 	CHECK_INT(reports[0].skipped, 0);
 	queue(&scanout, 10, 1, 2);
 	scanout_choose(&scanout, 10);
-	scanout_start(&scanout, 11); /* before its flip ends */
-	scanout_flipped(&scanout, 10, reports);
-	CHECK_INT(vblank_comes(&scanout, 10, reports), 0);
-	CHECK_INT(vblank_comes(&scanout, 11, reports), 1);
-	expect(&reports[0], 11, PRESENTER_PICTURE, 2, true);
+	scanout_pause(&scanout);
+	scanout_start(&scanout, 12); /* before its flip ends */
+	CHECK_INT(flip_ends(&scanout, 10, reports), 1);
+	expect(&reports[0], 10, PRESENTER_PICTURE, 2, false);
+	CHECK_INT(vblank_comes(&scanout, 11, reports), 0);
+	CHECK_INT(vblank_comes(&scanout, 12, reports), 1);
+	expect(&reports[0], 12, PRESENTER_KEPT, 2, false);
+}
+
+/* The pause comes between a vblank and the end of its flip: neither is lost. */
+static void test_pause_that_is_waited_in(void)
+{
+	struct scanout scanout = {0};
+	struct presenter_flip reports[2];
+	queue(&scanout, 0, 1, 1);
+	scanout_choose(&scanout, 0);
+	CHECK_INT(vblank_comes(&scanout, 0, reports), 0);
+	scanout_pause(&scanout);
+	CHECK_INT(flip_ends(&scanout, 3, reports), 2);
+	expect(&reports[0], 0, PRESENTER_KEPT, 0, false);
+	expect(&reports[1], 3, PRESENTER_PICTURE, 1, true);
+	scanout_start(&scanout, 2);
+	CHECK_INT(vblank_comes(&scanout, 3, reports), 0);
+	CHECK_INT(vblank_comes(&scanout, 4, reports), 1);
+	expect(&reports[0], 4, PRESENTER_KEPT, 1, false);
+	CHECK_INT(reports[0].skipped, 0);
 }
 
 static void test_skipped_vblanks(void)
@@ -158,10 +188,10 @@ static void test_standby(void)
 	queue(&scanout, 0, 1, 1);
 	flips_set_standby(&scanout.flips, (uint32_t)flips_acquire(&scanout.flips), 1, 2);
 	scanout_choose(&scanout, 0);
-	scanout_flipped(&scanout, 0, reports);
+	flip_ends(&scanout, 0, reports);
 	vblank_comes(&scanout, 0, reports);
 	CHECK(scanout_choose(&scanout, 1) >= 0);
-	scanout_flipped(&scanout, 1, reports);
+	flip_ends(&scanout, 1, reports);
 	CHECK_INT(vblank_comes(&scanout, 1, reports), 1);
 	expect(&reports[0], 1, PRESENTER_STANDBY, 2, false);
 }
@@ -185,7 +215,7 @@ static void test_random(void)
 			count = vblank_comes(&scanout, vblank++, reports);
 			break;
 		case 2:
-			count = scanout_flipped(&scanout, vblank + (random >> 12) % 2 - (vblank > 0), reports);
+			count = flip_ends(&scanout, vblank + (random >> 12) % 2 - (vblank > 0), reports);
 			break;
 		case 3:
 			scanout_failed(&scanout);
@@ -219,6 +249,7 @@ int main(void)
 	RUN(test_silent_flip);
 	RUN(test_refused_flip);
 	RUN(test_flip_in_a_pause);
+	RUN(test_pause_that_is_waited_in);
 	RUN(test_skipped_vblanks);
 	RUN(test_standby);
 	RUN(test_random);

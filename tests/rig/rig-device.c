@@ -12,7 +12,7 @@
 #define FLIPS 60u
 
 struct heard {
-	uint64_t vblank, vblank_ns, flipped;
+	uint64_t vblank, vblank_ns, flipped, flipped_ns;
 	uint32_t vblanks, flips;
 };
 
@@ -24,10 +24,11 @@ static void on_vblank(void *data, uint64_t sequence, uint64_t time_ns)
 	heard->vblanks++;
 }
 
-static void on_flipped(void *data, uint64_t sequence)
+static void on_flipped(void *data, uint64_t sequence, uint64_t time_ns)
 {
 	struct heard *heard = data;
 	heard->flipped = sequence;
+	heard->flipped_ns = time_ns;
 	heard->flips++;
 }
 
@@ -117,6 +118,7 @@ static void flip(struct kms_device *device, struct kms_buffer buffers[2])
 		wait_for_both(device, &heard, i + 1);
 		CHECK_INT(heard.vblank, sequence + 1);
 		CHECK_INT((uint32_t)heard.flipped, (uint32_t)heard.vblank);
+		CHECK_NEAR(heard.flipped_ns, heard.vblank_ns, 1000.0);
 		CHECK_NEAR(heard.vblank_ns - last_ns, 1e9 / kms_mode_refresh_hz(kms_device_get_mode(device)), 2000.0);
 		last_ns = heard.vblank_ns;
 		sequence = heard.vblank;

@@ -145,8 +145,9 @@ static void on_vblank(void *data, uint64_t sequence, uint64_t time_ns)
 	(void)time_ns;
 }
 
-static void on_flipped(void *data, uint64_t sequence)
+static void on_flipped(void *data, uint64_t sequence, uint64_t time_ns)
 {
+	(void)time_ns;
 	*(uint64_t *)data = sequence;
 }
 
