@@ -82,6 +82,7 @@ struct kms {
 	uint32_t tried_width, tried_height;        /* the render thread's: does the controller enlarge these pictures? */
 	bool scales;
 	struct log_limit size_limit; /* the render thread's */
+	bool lacks_memory, lacks_gl; /* the render thread's: the last picture could not be made, and that was said */
 	struct shrink *shrink;       /* the render thread's, for pictures of this size; NULL: none yet */
 	uint32_t shrink_width, shrink_height;
 	struct error loss; /* does not change once `lost` is set */

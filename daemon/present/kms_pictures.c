@@ -190,19 +190,29 @@ static void give_back(struct kms *kms, uint32_t index)
 	pthread_mutex_unlock(&kms->lock);
 }
 
-static int acquire(struct kms *kms, make_function make, uint32_t width, uint32_t height, struct presenter_image *image,
-				   struct kms_picture **picture)
+/* When it begins and when it ends, since it is tried at each vblank. */
+static void tell_lack(struct kms *kms, bool *lack, bool lacks, const struct error *error)
 {
-	struct error error;
+	if (lacks && !*lack)
+		log_warning(kms->params.log, "%s", error->text);
+	else if (*lack && !lacks)
+		log_info(kms->params.log, "kms: there is memory for pictures again");
+	*lack = lacks;
+}
+
+/* lack: of this kind of memory. */
+static int acquire(struct kms *kms, make_function make, bool *lack, uint32_t width, uint32_t height,
+				   struct presenter_image *image, struct kms_picture **picture)
+{
+	struct error error = {""};
 	*picture = acquire_any(kms, image);
 	if (!*picture)
 		return -EBUSY;
 	drop_fence(*picture);
 	const int result = make(kms, *picture, width, height, &error);
-	if (result == 0)
-		return 0;
-	log_warning(kms->params.log, "%s", error.text);
-	give_back(kms, image->index);
+	tell_lack(kms, lack, result < 0, &error);
+	if (result < 0)
+		give_back(kms, image->index);
 	return result;
 }
 
@@ -228,7 +238,7 @@ int kms_acquire(struct presenter *presenter, uint32_t width, uint32_t height, st
 {
 	struct kms *kms = kms_of(presenter);
 	struct kms_picture *picture;
-	const int result = acquire(kms, make_in_memory, width, height, image, &picture);
+	const int result = acquire(kms, make_in_memory, &kms->lacks_memory, width, height, image, &picture);
 	if (result < 0)
 		return result;
 	const struct kms_buffer *buffer = &picture->memory.buffer;
@@ -244,7 +254,7 @@ int kms_acquire_texture(struct presenter *presenter, uint32_t width, uint32_t he
 {
 	struct kms *kms = kms_of(presenter);
 	struct kms_picture *picture;
-	const int result = acquire(kms, make_in_gl, width, height, image, &picture);
+	const int result = acquire(kms, make_in_gl, &kms->lacks_gl, width, height, image, &picture);
 	if (result < 0)
 		return result;
 	if (!lend(kms, picture, &picture->in_gl, width, height, image))

@@ -185,6 +185,8 @@ bool kms_device_is_connected(struct kms_device *device, bool probe)
 int kms_device_create_buffer(struct kms_device *device, struct kms_buffer *buffer, struct error *error)
 {
 	const size_t stride = FAKE_WIDTH * 4;
+	if (atomic_load(&fake_kms.full))
+		return error_set(error, -ENOMEM, "kms: the test gives no buffer");
 	*buffer = (struct kms_buffer){.stride = stride, .size = stride * FAKE_HEIGHT, .framebuffer = 1};
 	buffer->data = calloc(1, buffer->size);
 	atomic_fetch_add(&fake_kms.buffers, 1);

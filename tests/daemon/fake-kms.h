@@ -25,6 +25,7 @@ struct fake_kms {
 	atomic_uint busy;      /* so many of the next flips are refused with EBUSY */
 	atomic_bool old_event; /* before each flip an event is read of a vblank that was long ago */
 	atomic_bool stuck;     /* the flip under way does not end */
+	atomic_bool full;      /* there is no memory for another buffer */
 	int terminal[2];       /* a pipe: 'L', another console is wanted; 'R', it is back */
 	sem_t left;            /* the display was given away */
 };

@@ -8,6 +8,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <pthread.h>
+#include <sys/mman.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -163,6 +164,52 @@ static void test_busy(void)
 	CHECK(atomic_load(&heard.late) > 0);
 	close_presenter(presenter);
 	atomic_store(&fake_kms.busy, 0);
+}
+
+static unsigned count_logged(const char *text)
+{
+	static char content[8192];
+	unsigned count = 0;
+	const ssize_t got = pread(quiet.fd, content, sizeof(content) - 1, 0);
+	content[got > 0 ? got : 0] = 0;
+	for (const char *at = content; (at = strstr(at, text)) != NULL; at++)
+		count++;
+	return count;
+}
+
+/* Takes all pictures that there are. */
+static void take_all(struct presenter *presenter, int result)
+{
+	struct presenter_image images[FLIPS_IMAGES];
+	unsigned count = 0;
+	int got = 0;
+	for (unsigned i = 0; i < 5 * FLIPS_IMAGES && count < FLIPS_IMAGES; i++) {
+		got = presenter->impl->acquire(presenter, FAKE_WIDTH, FAKE_HEIGHT, &images[count]);
+		count += got == 0;
+	}
+	CHECK_INT(got, result);
+	while (count > 0)
+		presenter->impl->release(presenter, &images[--count]);
+}
+
+/* No memory for a picture: said once, however often it is tried, and once that there is. */
+static void test_full(void)
+{
+	const struct log before = quiet;
+	quiet = (struct log){.fd = memfd_create("log", MFD_CLOEXEC), .level = LOG_LEVEL_INFO};
+	struct presenter *presenter = open_presenter();
+	if (!presenter)
+		return;
+	atomic_store(&fake_kms.full, true);
+	take_all(presenter, -ENOMEM);
+	atomic_store(&fake_kms.full, false);
+	take_all(presenter, 0);
+	take_all(presenter, 0);
+	close_presenter(presenter);
+	CHECK_INT(count_logged("kms: the test gives no buffer"), 1);
+	CHECK_INT(count_logged("kms: there is memory for pictures again"), 1);
+	close(quiet.fd);
+	quiet = before;
 }
 
 /* An event of long ago, which lay there to be read, moves nothing. */
@@ -361,6 +408,7 @@ int main(void)
 		return 1;
 	RUN(test_pictures);
 	RUN(test_busy);
+	RUN(test_full);
 	RUN(test_old_event);
 	RUN(test_larger_again);
 	RUN(test_slow_gpu);
