@@ -171,7 +171,7 @@ static int check_request(const struct engine *engine, const struct engine_image 
 						 image->stride, 4 * (size_t)engine->width);
 	if (!image->data && image->texture && !engine->executor->info.brought)
 		return error_set(error, -EINVAL, "the image is a texture, but the engine's context is its own");
-	return 0;
+	return arrivals_check(&engine->arrivals, image, error);
 }
 
 static int show(struct engine *engine, const struct engine_request *request, struct engine_image *image,
@@ -205,6 +205,20 @@ static int show(struct engine *engine, const struct engine_request *request, str
 	return result;
 }
 
+/* What it will hold is known, but not told before it does. */
+static int ask(struct engine *engine, const struct engine_request *request, struct engine_image *image,
+			   struct error *error)
+{
+	struct arrival *arrival = arrivals_next(&engine->arrivals);
+	*arrival = (struct arrival){.image = *image};
+	image->holds = 0;
+	engine->job.arrival = arrival;
+	const int result = show(engine, request, &arrival->image, error);
+	engine->job.arrival = NULL;
+	engine->arrivals.count += result == 0;
+	return result;
+}
+
 int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
 				  struct error *error)
 {
@@ -214,7 +228,10 @@ int engine_render(struct engine *engine, const struct engine_request *request, s
 		result = engine->executor->ops->enter(engine->executor, error);
 	if (result < 0)
 		return result;
-	result = show(engine, request, image, error);
+	if (image->data && image->unfinished)
+		result = ask(engine, request, image, error);
+	else
+		result = show(engine, request, image, error);
 	engine->job.image = NULL;
 	engine->report.total_ms += (double)(now_ns() - began) * 1e-6;
 	return result;
@@ -224,6 +241,8 @@ int engine_finish(struct engine *engine, struct error *error)
 {
 	const uint64_t began = now_ns();
 	int result = engine->executor->ops->enter(engine->executor, error);
+	for (uint32_t i = 0; i < engine->arrivals.count && result == 0; i++)
+		result = engine->executor->ops->receive(engine->executor, arrivals_at(&engine->arrivals, i), error);
 	if (result == 0)
 		result = engine->executor->ops->finish(engine->executor, error);
 	engine->report.total_ms += (double)(now_ns() - began) * 1e-6;

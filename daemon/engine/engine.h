@@ -12,6 +12,7 @@
  *
  *   engine_begin(engine, frame, ...)       once per real frame
  *   engine_render(engine, request, image)  once per displayed frame
+ *   engine_take(engine, image)             once per displayed frame that engine_render() did not wait for
  *
  * What is computed: docs/method.md. Source: Didyk et al. 2010, Sections 5, 6.
  */
@@ -98,6 +99,7 @@ struct engine_params {
 	bool leave_nothing_out; /* all triangles, depths and layers, needed or not; to measure what leaving out is worth */
 	bool finish_each_pass;  /* wait after each pass, so that CPU clocks tell its time; for benchmarks */
 	bool query_software;    /* timer queries of a CPU renderer too, though they tell little; for tests */
+	bool buffer_software;   /* pixels come back through buffers from a CPU renderer too, which is slower; for tests */
 };
 
 enum engine_show {
@@ -128,8 +130,16 @@ struct engine_image {
 	 */
 	uint32_t texture;
 	uint32_t texture_x, texture_y; /* of a larger one: where the picture begins */
-	bool unfinished;               /* engine_render() need not wait for them: engine_finish() does */
+	/*
+	 * engine_render() need not wait for the pixels. Those of a texture are there after engine_finish(). With data the
+	 * memory is the engine's until engine_take() gives it back, oldest first: the caller neither reads, writes nor
+	 * frees it, nor has the engine draw anything else there; `holds` is 0 until then.
+	 */
+	bool unfinished;
 };
+
+/* Pictures in memory that may be unfinished at a time. */
+#define ENGINE_MAX_UNFINISHED 2
 
 struct engine_begin_params {
 	uint32_t n;                /* N, 1 to 8, clamped */
@@ -155,7 +165,7 @@ struct engine_report {
 		const char *reason;
 	} left_out[ENGINE_MAX_LEFT_OUT];
 	const char *time_source; /* "timer-query", "finish", "cpu" */
-	double total_ms;         /* CPU wall time inside engine_begin and engine_render so far */
+	double total_ms;         /* CPU wall time inside engine_begin, _render, _take and _finish so far */
 	uint32_t vertices, triangles, snapped, folded, doubtful;
 	uint64_t invalid_pixels;
 	uint64_t bytes_up, bytes_down;
@@ -184,9 +194,9 @@ const struct engine_method_info *engine_methods(void);
 
 /* Makes context and engine, compiles what every frame needs. NULL with a sentence. */
 struct engine *engine_create(const struct engine_params *params, struct error *error);
-/* NULL accepted. */
+/* NULL accepted. Nothing is written to the memory of unfinished pictures any more. */
 void engine_destroy(struct engine **engine);
-/* It may live on another thread from now on: that which calls the next function. */
+/* It may live on another thread from now on: that which calls the next function, of unfinished pictures too. */
 void engine_leave(struct engine *engine);
 
 const struct engine_info *engine_get_info(const struct engine *engine);
@@ -202,14 +212,39 @@ int engine_begin(struct engine *engine, const struct frame *frame, const struct 
 /* Size of displayed frames: that of the colour plane of the frame begun; 0 x 0 before the first. */
 void engine_get_size(const struct engine *engine, uint32_t *width, uint32_t *height);
 
-/* Makes one displayed frame of the real frame begun last. With image->data it returns when the pixels are there. */
+/*
+ * Makes one displayed frame of the real frame begun last. With image->data it returns when the pixels are there, or, if
+ * it is unfinished, as soon as they are asked for: they come back while the next picture is drawn, or the next real
+ * frame begun. With an executor that writes there itself (the CPU, GL on the CPU) they are there at once, and are taken
+ * all the same. 0, or a negative errno with a sentence (-EINVAL: the image or what is asked for; -EBUSY:
+ * ENGINE_MAX_UNFINISHED pictures are unfinished, or one has this memory; -ENOMEM; -EIO: the context is lost): then the
+ * memory is the caller's.
+ */
 int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
 				  struct error *error);
 
-/* Waits until all that was rendered is done. 0, or -EIO with a sentence: the context is lost. */
+/*
+ * Waits for the oldest unfinished picture in memory and gives it back: *image is what engine_render() was given, with
+ * what it holds now. Real frames begun since, of whatever size, with other settings or on another thread, do not matter
+ * to it. 0, or with a sentence -ENOENT: there is none, *image is empty; -EIO: it is lost, perhaps with the context, and
+ * *image, which holds nothing to be relied on, is the caller's again. One that is lost is so at once: nobody waits for
+ * each of them.
+ */
+int engine_take(struct engine *engine, struct engine_image *image, struct error *error);
+
+/* Gives up all unfinished pictures in memory: nothing is written there any more, and nothing is left to take. */
+void engine_drop(struct engine *engine);
+
+/*
+ * Waits until all that was rendered is done; unfinished pictures in memory are there then, but still to be taken. 0, or
+ * -EIO with a sentence: the context is lost.
+ */
 int engine_finish(struct engine *engine, struct error *error);
 
-/* What ran since engine_begin(). Owned by the engine, valid until the next call. Waits for timer queries. */
+/*
+ * What ran since engine_begin(), engine_take() with it. Owned by the engine, valid until the next call. Waits for timer
+ * queries, and with them for unfinished pictures.
+ */
 const struct engine_report *engine_get_report(struct engine *engine);
 
 /* Changes method, blur, compensation or cell from the next engine_begin() on; context and device stay. */

@@ -16,6 +16,7 @@
 #include "daemon/engine/engine.h"
 #include "daemon/error.h"
 
+struct arrival;
 struct engine;
 struct pool;
 
@@ -30,7 +31,7 @@ enum pass_id {
 	PASS_PUT,        /* SHOWN from engine->pixels.shown */
 	PASS_WARP,       /* SHOWN from job.picture and LOW, by the mesh */
 	PASS_UI,         /* UI over job.picture; job.picture is SHOWN afterwards */
-	PASS_READ,       /* job.picture to job.image */
+	PASS_READ,       /* job.picture to job.image: there when it returns, unless job.arrival says that it need not be */
 	PASS_COPY,       /* job.picture to the texture of job.image, done when it returns */
 	PASS_COUNT,
 };
@@ -75,6 +76,10 @@ struct executor_ops {
 	void (*flush)(struct executor *executor);
 	/* It is done. 0, or -EIO with a sentence: all is lost. */
 	int (*finish)(struct executor *executor, struct error *error);
+	/* Nothing of it is missing any more, nor of what was asked for before. 0, or -EIO with a sentence: see forget(). */
+	int (*receive)(struct executor *executor, struct arrival *arrival, struct error *error);
+	/* What is missing in any picture never comes: these are lost, their memory is let alone. Even if enter() fails. */
+	void (*forget)(struct executor *executor);
 	/* Around each pass; they do not nest. What cannot be known yet comes with collect_times(), or never, with drop. */
 	void (*time_begin)(struct executor *executor, struct engine_pass_report *pass, bool on_cpu);
 	void (*time_end)(struct executor *executor);

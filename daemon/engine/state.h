@@ -5,6 +5,7 @@
 #ifndef PURSUIT_ENGINE_STATE_H
 #define PURSUIT_ENGINE_STATE_H
 
+#include "daemon/engine/arrival.h"
 #include "daemon/engine/bend.h"
 #include "daemon/engine/bounds.h"
 #include "daemon/engine/convert.h"
@@ -25,6 +26,7 @@ struct job {
 	enum picture_id picture;    /* warp, ui, read: what they take */
 	struct engine_image *image; /* engine_render() only; an executor may make SHOWN right there */
 	uint64_t held, holds;       /* read: what the image held, and holds then, as struct engine_image says */
+	struct arrival *arrival;    /* read: where to note what is missing when it returns; NULL: nothing may be */
 	/* paint: fills engine->pixels.shown; 0 or a negative errno with a sentence */
 	int (*paint)(struct engine *engine, struct error *error);
 };
@@ -52,6 +54,7 @@ struct engine {
 	struct executor *executor;
 	struct engine_report report;
 	struct job job;
+	struct arrivals arrivals;
 
 	struct convert color_convert, ui_convert;
 	struct plan plan;

@@ -155,12 +155,6 @@ static void draw(struct picture *picture, uint32_t width, uint32_t height, doubl
 
 #define PICTURES 4
 
-/* As on a GPU: pictures come back by way of buffers. */
-static void buffer(struct engine *engine)
-{
-	gl_of(engine)->readback.buffered = true;
-}
-
 static void check_steady(const char *method, enum engine_analysis analysis)
 {
 	struct engine_params own = params;
@@ -168,10 +162,10 @@ static void check_steady(const char *method, enum engine_analysis analysis)
 	uint8_t *out = malloc((size_t)4 * 400 * 300);
 	own.method = method;
 	own.analysis = analysis;
+	own.buffer_software = true;
 	struct engine *engine = make(&own);
 	for (int i = 0; i < PICTURES; i++)
 		draw(&pictures[i], 400, 300, 0.7 * i);
-	buffer(engine);
 	for (int i = 0; i < 2 * PICTURES; i++)
 		show_all(engine, &pictures[i % PICTURES], out);
 	count_calls(engine);
@@ -245,7 +239,6 @@ static void check_memory(const char *name, const struct engine_params *own, bool
 	struct engine *engine = make(own);
 	struct picture pictures[2];
 	uint8_t *out = malloc((size_t)4 * 1920 * 1080);
-	buffer(engine);
 	for (int i = 0; i < 2; i++) {
 		draw(&pictures[i], 1920, 1080, i);
 		for (uint32_t y = 0; y < 1080; y++)
@@ -267,6 +260,7 @@ static void check_memory(const char *name, const struct engine_params *own, bool
 static void test_memory(void)
 {
 	struct engine_params own = params;
+	own.buffer_software = true;
 	check_memory("default", &own, false);
 	own.motion_model = ENGINE_MOTION_QUADRATIC;
 	own.analysis = ENGINE_ANALYSIS_GPU;
@@ -283,8 +277,9 @@ static void test_memory(void)
 static void test_read_back(void)
 {
 	static const uint32_t sizes[][2] = {{1, 1}, {7, 3}, {640, 360}, {1500, 1000}, {2, 900}, {2048, 2}};
-	struct engine *engines[2] = {make(&params), make(&params)};
-	buffer(engines[1]);
+	struct engine_params own = params;
+	own.buffer_software = true;
+	struct engine *engines[2] = {make(&params), make(&own)};
 	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++) {
 		const uint32_t width = sizes[i][0], height = sizes[i][1];
 		const size_t stride = 4 * (size_t)width + 20, bytes = stride * height;
@@ -470,11 +465,11 @@ static void check_failures(enum engine_analysis analysis)
 	uint32_t count = 0;
 	bool failed = true;
 	own.analysis = analysis;
+	own.buffer_software = true;
 	struct engine *engine = make(&own);
 	struct gl *gl = &gl_of(engine)->context->gl;
 	draw(&small, 200, 150, 0.0);
 	draw(&large, 400, 300, 0.7);
-	buffer(engine);
 	show_both(engine, &large, want);
 	real = *gl;
 	gl->CheckFramebufferStatus = fail_framebuffer;

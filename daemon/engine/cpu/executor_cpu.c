@@ -54,6 +54,16 @@ static int finish(struct executor *executor, struct error *error)
 	return 0;
 }
 
+/* What was rendered is in the caller's memory. */
+static int receive(struct executor *executor, struct arrival *arrival, struct error *error)
+{
+	return 0;
+}
+
+static void forget(struct executor *executor)
+{
+}
+
 static void release_planes(struct engine *engine)
 {
 	cpu_finish_intake(engine);
@@ -119,6 +129,8 @@ static const struct executor_ops ops = {
 	.release_planes = release_planes,
 	.flush = flush,
 	.finish = finish,
+	.receive = receive,
+	.forget = forget,
 	.time_begin = time_begin,
 	.time_end = time_end,
 	.collect_times = collect_times,

@@ -105,6 +105,16 @@ static int finish(struct executor *executor, struct error *error)
 	return error_set(error, -EIO, "the context is lost: a fence does not come (0x%x)", result);
 }
 
+static int receive(struct executor *executor, struct arrival *arrival, struct error *error)
+{
+	return readback_receive(&self(executor)->readback, table(executor), arrival, error);
+}
+
+static void forget(struct executor *executor)
+{
+	readback_forget(&self(executor)->readback, table(executor));
+}
+
 static void time_begin(struct executor *executor, struct engine_pass_report *pass, bool on_cpu)
 {
 	timer_begin(&self(executor)->timer, table(executor), pass, on_cpu);
@@ -167,6 +177,8 @@ static const struct executor_ops ops = {
 	.release_planes = release_planes,
 	.flush = flush,
 	.finish = finish,
+	.receive = receive,
+	.forget = forget,
 	.time_begin = time_begin,
 	.time_end = time_end,
 	.collect_times = collect_times,
@@ -196,7 +208,7 @@ struct executor *executor_gl_create(const struct engine_params *params, struct e
 	executor->base.max_size = (uint32_t)executor->context->gl.max_size;
 	timer_init(&executor->timer, &executor->context->gl, !executor->base.info.software || params->query_software,
 			   params->finish_each_pass);
-	executor->readback.buffered = !executor->base.info.software;
+	executor->readback.buffered = !executor->base.info.software || params->buffer_software;
 	/* For what the CPU does here; without it, the caller does all. */
 	executor->base.pool = pool_create(params->threads);
 	set_up(executor);

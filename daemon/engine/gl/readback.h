@@ -2,9 +2,10 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Pixels on their way back from the framebuffer that is bound for reading, rows as they lie. On a GPU block by block
- * through GL buffers that take turns: it fills the next ones while one is copied to where it belongs. A CPU renderer
- * writes there itself.
+ * Pixels on their way back from the framebuffer that is bound for reading, rows as they lie. On a GPU by way of GL
+ * buffers, block by block: it fills them while the CPU copies others to where they belong, or does something else. Each
+ * block holds what was there when it was asked for, whatever is drawn afterwards. A CPU renderer writes to where the
+ * pixels belong itself.
  */
 #ifndef PURSUIT_ENGINE_GL_READBACK_H
 #define PURSUIT_ENGINE_GL_READBACK_H
@@ -12,18 +13,35 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "daemon/engine/arrival.h"
 #include "daemon/engine/gl/gl.h"
 #include "daemon/error.h"
 
+/* Bytes; a row of the widest picture is less. */
+#define READBACK_BLOCK ((size_t)512 * 1024)
+/* Blocks for pictures that somebody waits for. */
 #define READBACK_BLOCKS 4u
+/* And at most, with others under way: two of 3840x2160. Of larger ones some rows are waited for when they are asked
+ * for. */
+#define READBACK_MOST 128u
 
+/* Rows in a buffer, and where they belong. */
+struct readback_block {
+	GLuint buffer;
+	GLsync filled; /* NULL: it never will be */
+	uint8_t *data;
+	size_t stride, row_bytes;
+	uint32_t rows;
+	struct arrival *arrival;
+};
+
+/* A zeroed one is ready for use. */
 struct readback {
-	bool buffered; /* by GL buffers */
-	struct readback_block {
-		GLuint buffer;
-		size_t bytes;
-		GLsync filled; /* NULL: nothing under way */
-	} blocks[READBACK_BLOCKS];
+	bool buffered;
+	struct readback_block blocks[READBACK_MOST]; /* under way: `count` from `first` on, around, the oldest first */
+	uint32_t first, count;
+	GLuint spare[READBACK_MOST]; /* buffers */
+	uint32_t spare_count;
 };
 
 struct readback_image {
@@ -32,9 +50,21 @@ struct readback_image {
 	uint32_t width, height;
 };
 
-/* Returns when all pixels are there. 0, or a negative errno with a sentence (-EIO: the context is lost, -ENOMEM). */
-int readback_run(struct readback *readback, const struct gl *gl, const struct readback_image *image,
-				 struct error *error);
+/*
+ * Asks for all pixels of an image and counts in `arrival` what is missing; ahead: waits for none, as long as there are
+ * blocks; else only for blocks enough to go on with. 0, or -EIO with a sentence: all that was under way is lost.
+ */
+int readback_ask(struct readback *readback, const struct gl *gl, const struct readback_image *image,
+				 struct arrival *arrival, bool ahead, struct error *error);
+
+/* Until nothing is missing there; what was asked for before is there first. Errors as above. */
+int readback_receive(struct readback *readback, const struct gl *gl, const struct arrival *arrival,
+					 struct error *error);
+
+/* What is under way is lost. */
+void readback_forget(struct readback *readback, const struct gl *gl);
+
+/* The same for good. */
 void readback_finish(struct readback *readback, const struct gl *gl);
 
 /* Bytes of its buffers. */

@@ -4,16 +4,19 @@
 #include "daemon/engine/gl/stream.h"
 
 #include <errno.h>
+#include <string.h>
 
 /* Few calls a picture, and a CPU renderer finds it in a core's cache still. */
 #define BLOCK_BYTES ((size_t)512 * 1024)
+
+#define LEAST_BYTES ((size_t)32 * 1024)
 
 /* Longer than any GPU takes for a block. */
 #define WAIT_NS 1000000000u
 
 void stream_finish(struct stream *stream, const struct gl *gl)
 {
-	for (uint32_t i = 0; i < STREAM_BLOCKS; i++) {
+	for (uint32_t i = 0; i < stream->made; i++) {
 		if (stream->blocks[i].busy)
 			gl->DeleteSync(stream->blocks[i].busy);
 		gl->DeleteBuffers(1, &stream->blocks[i].buffer);
@@ -26,28 +29,55 @@ uint32_t stream_rows(size_t row_bytes)
 	return row_bytes < BLOCK_BYTES ? (uint32_t)(BLOCK_BYTES / row_bytes) : 1;
 }
 
-static void wait_for(struct stream *stream, struct stream_block *block, const struct gl *gl)
+void stream_widen(struct stream *stream, uint32_t blocks)
 {
-	if (!block->busy)
-		return;
-	if (gl->ClientWaitSync(block->busy, 0, 0) == GL_TIMEOUT_EXPIRED) {
+	const uint32_t wished = blocks < STREAM_MOST - STREAM_BLOCKS ? STREAM_BLOCKS + blocks : STREAM_MOST;
+	stream->wished = wished > stream->wished ? wished : stream->wished;
+}
+
+static bool is_busy(const struct stream_block *block, const struct gl *gl)
+{
+	return block->busy && gl->ClientWaitSync(block->busy, 0, 0) == GL_TIMEOUT_EXPIRED;
+}
+
+/* Before the oldest one, which then is the next but one. */
+static void make_block(struct stream *stream, const struct gl *gl)
+{
+	struct stream_block *block = &stream->blocks[stream->next];
+	memmove(block + 1, block, (stream->made - stream->next) * sizeof(*block));
+	*block = (struct stream_block){.buffer = 0};
+	gl->GenBuffers(1, &block->buffer);
+	stream->made++;
+}
+
+/* The next block, which nobody reads. */
+static struct stream_block *free_block(struct stream *stream, const struct gl *gl)
+{
+	struct stream_block *block = &stream->blocks[stream->next];
+	const bool busy = stream->made >= STREAM_BLOCKS && is_busy(block, gl);
+	if (stream->made < STREAM_BLOCKS || (busy && stream->made < stream->wished)) {
+		make_block(stream, gl);
+		return block;
+	}
+	if (busy) {
 		stream->waits++;
 		gl->ClientWaitSync(block->busy, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS);
 	}
-	gl->DeleteSync(block->busy);
+	if (block->busy)
+		gl->DeleteSync(block->busy);
 	block->busy = NULL;
+	return block;
 }
 
 uint8_t *stream_begin(struct stream *stream, const struct gl *gl, size_t bytes, struct error *error)
 {
-	struct stream_block *block = &stream->blocks[stream->next];
+	struct stream_block *block = free_block(stream, gl);
 	const GLbitfield access = GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT | GL_MAP_UNSYNCHRONIZED_BIT;
-	wait_for(stream, block, gl);
-	if (!block->buffer)
-		gl->GenBuffers(1, &block->buffer);
 	gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, block->buffer);
 	if (bytes > block->bytes) {
-		block->bytes = bytes > BLOCK_BYTES ? bytes : BLOCK_BYTES;
+		/* Where there are many they are as large as they must be. */
+		const size_t least = stream->made > STREAM_BLOCKS ? LEAST_BYTES : BLOCK_BYTES;
+		block->bytes = (bytes + least - 1) / least * least;
 		gl->BufferData(GL_PIXEL_UNPACK_BUFFER, (GLsizeiptr)block->bytes, NULL, GL_STREAM_DRAW);
 	}
 	uint8_t *data = gl->MapBufferRange(GL_PIXEL_UNPACK_BUFFER, 0, (GLsizeiptr)bytes, access);
@@ -69,7 +99,7 @@ int stream_send(struct stream *stream, const struct gl *gl, const struct stream_
 						  (const void *)to->offset);
 	if (good) {
 		block->busy = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-		stream->next = (stream->next + 1) % STREAM_BLOCKS;
+		stream->next = (stream->next + 1) % stream->made;
 	}
 	gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 	return good ? 0 : error_set(error, -EIO, "the renderer lost a block of rows on its way up");
@@ -78,7 +108,7 @@ int stream_send(struct stream *stream, const struct gl *gl, const struct stream_
 uint64_t stream_bytes(const struct stream *stream)
 {
 	uint64_t bytes = 0;
-	for (uint32_t i = 0; i < STREAM_BLOCKS; i++)
+	for (uint32_t i = 0; i < stream->made; i++)
 		bytes += stream->blocks[i].bytes;
 	return bytes;
 }

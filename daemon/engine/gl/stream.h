@@ -16,16 +16,19 @@
 #include "daemon/engine/gl/gl.h"
 #include "daemon/error.h"
 
+/* Blocks that there are soon, and at most: rows of tiles of colour and UI of 3840x2160. */
 #define STREAM_BLOCKS 4u
+#define STREAM_MOST 140u
 
 struct stream {
 	struct stream_block {
 		GLuint buffer;
 		size_t bytes;
 		GLsync busy; /* the copy out of it; NULL: none */
-	} blocks[STREAM_BLOCKS];
-	uint32_t next;
-	uint64_t waits; /* blocks that were still being read when it was their turn */
+	} blocks[STREAM_MOST];
+	uint32_t made, next; /* the next one is the oldest */
+	uint32_t wished;     /* by stream_widen() */
+	uint64_t waits;      /* blocks that were still being read when it was their turn */
 };
 
 /* A rectangle of the texture that is bound, and where in the block its rows begin, one after another. */
@@ -38,6 +41,12 @@ struct stream_target {
 
 /* A zeroed stream is ready for use. */
 void stream_finish(struct stream *stream, const struct gl *gl);
+
+/*
+ * From now on so many blocks at a time go up without waiting for what the renderer has to do before: where none is free
+ * when it is its turn there will be another one.
+ */
+void stream_widen(struct stream *stream, uint32_t blocks);
 
 /* How many rows of that many bytes a block takes, at least 1. */
 uint32_t stream_rows(size_t row_bytes);
