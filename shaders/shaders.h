@@ -13,7 +13,6 @@ extern const char shader_pyramid_frag[];
 extern const char shader_compensate_frag[];
 extern const char shader_warp_frag[];
 extern const char shader_copy_frag[];
-extern const char shader_ui_frag[];
 extern const char shader_analyse_comp[];
 
 #endif

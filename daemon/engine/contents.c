@@ -75,7 +75,7 @@ void contents_layer(struct contents *contents, const struct tiles *low)
 {
 	memset(contents->layered, 0, (size_t)contents->columns * contents->rows);
 	for (uint32_t i = 0; i < low->columns * low->rows; i++) {
-		const uint32_t x = i % low->columns * low->tile, y = i / low->columns * low->tile;
+		const uint32_t x = i % low->columns * low->tile_width, y = i / low->columns * low->tile_height;
 		if (low->marked[i])
 			contents->layered[y / TILE_HEIGHT * contents->columns + x / TILE_WIDTH] = 1;
 	}

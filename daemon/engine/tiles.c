@@ -6,9 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile)
+bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile_width, uint32_t tile_height)
 {
-	uint32_t columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+	uint32_t columns = (width + tile_width - 1) / tile_width, rows = (height + tile_height - 1) / tile_height;
 	if (columns * rows > tiles->capacity) {
 		tiles_finish(tiles);
 		tiles->marked = malloc((size_t)columns * rows);
@@ -18,7 +18,8 @@ bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t 
 	}
 	tiles->width = width;
 	tiles->height = height;
-	tiles->tile = tile;
+	tiles->tile_width = tile_width;
+	tiles->tile_height = tile_height;
 	tiles->columns = columns;
 	tiles->rows = rows;
 	tiles->count = 0;
@@ -30,15 +31,6 @@ void tiles_finish(struct tiles *tiles)
 {
 	free(tiles->marked);
 	*tiles = (struct tiles){0};
-}
-
-bool tiles_copy(struct tiles *to, const struct tiles *from)
-{
-	if (!tiles_begin(to, from->width, from->height, from->tile))
-		return false;
-	memcpy(to->marked, from->marked, (size_t)from->columns * from->rows);
-	to->count = from->count;
-	return true;
 }
 
 struct range {
@@ -57,8 +49,8 @@ static struct range meet(float from, float to, uint32_t size, uint32_t count, ui
 
 void tiles_mark(struct tiles *tiles, struct box box)
 {
-	struct range x = meet(box.left, box.right, tiles->width, tiles->columns, tiles->tile);
-	struct range y = meet(box.top, box.bottom, tiles->height, tiles->rows, tiles->tile);
+	struct range x = meet(box.left, box.right, tiles->width, tiles->columns, tiles->tile_width);
+	struct range y = meet(box.top, box.bottom, tiles->height, tiles->rows, tiles->tile_height);
 	for (uint32_t j = y.first; j < y.end; j++)
 		for (uint32_t i = x.first; i < x.end; i++) {
 			uint8_t *tile = &tiles->marked[j * tiles->columns + i];
@@ -77,8 +69,8 @@ void tiles_sum(struct tiles *tiles)
 
 bool tiles_touch(const struct tiles *tiles, struct box box)
 {
-	struct range x = meet(box.left, box.right, tiles->width, tiles->columns, tiles->tile);
-	struct range y = meet(box.top, box.bottom, tiles->height, tiles->rows, tiles->tile);
+	struct range x = meet(box.left, box.right, tiles->width, tiles->columns, tiles->tile_width);
+	struct range y = meet(box.top, box.bottom, tiles->height, tiles->rows, tiles->tile_height);
 	for (uint32_t j = y.first; j < y.end; j++)
 		for (uint32_t i = x.first; i < x.end; i++)
 			if (tiles->marked[j * tiles->columns + i])
@@ -106,7 +98,8 @@ static float *write_rectangle(float *numbers, float left, float top, float right
 
 size_t tiles_write(const struct tiles *tiles, float *numbers)
 {
-	float *at = numbers, tile = (float)tiles->tile;
+	const float width = (float)tiles->tile_width, height = (float)tiles->tile_height;
+	float *at = numbers;
 	for (uint32_t j = 0; j < tiles->rows; j++)
 		for (uint32_t i = 0; i < tiles->columns; i++) {
 			const uint8_t *row = tiles->marked + j * tiles->columns;
@@ -115,8 +108,8 @@ size_t tiles_write(const struct tiles *tiles, float *numbers)
 			uint32_t first = i;
 			while (i + 1 < tiles->columns && row[i + 1])
 				i++;
-			at =
-				write_rectangle(at, tile * (float)first, tile * (float)j, tile * (float)(i + 1), tile * (float)(j + 1));
+			at = write_rectangle(at, width * (float)first, height * (float)j, width * (float)(i + 1),
+								 height * (float)(j + 1));
 		}
 	return (size_t)(at - numbers);
 }

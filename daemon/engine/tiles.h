@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* A mask of square tiles over a picture: where something has to be done. */
+/* A mask of equal tiles over a picture: where something has to be done. */
 #ifndef PURSUIT_ENGINE_TILES_H
 #define PURSUIT_ENGINE_TILES_H
 
@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 struct tiles {
-	uint32_t width, height; /* of the picture, pixels */
-	uint32_t tile;          /* pixels a side */
+	uint32_t width, height;           /* of the picture, pixels */
+	uint32_t tile_width, tile_height; /* pixels */
 	uint32_t columns, rows;
 	uint8_t *marked;
 	uint32_t capacity;
@@ -24,16 +24,15 @@ struct box {
 };
 
 /* All unmarked. False if memory is out. */
-bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile);
+bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile_width, uint32_t tile_height);
 void tiles_finish(struct tiles *tiles);
-/* The same tiles, the same marked. False if memory is out. */
-bool tiles_copy(struct tiles *to, const struct tiles *from);
 
 /* Several threads may mark at a time. */
 void tiles_mark(struct tiles *tiles, struct box box);
 /* Counts the marked ones. */
 void tiles_sum(struct tiles *tiles);
 
+/* Whether any of those that the box meets is marked. */
 bool tiles_touch(const struct tiles *tiles, struct box box);
 
 /* Marks everything. */

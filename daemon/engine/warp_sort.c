@@ -109,7 +109,8 @@ static void make_lists(struct warp_mesh *mesh)
 int warp_mesh_begin_tiles(struct warp_mesh *mesh, uint32_t width, uint32_t height, uint32_t level, struct error *error)
 {
 	uint32_t levels_tile = LEVELS_TILE >> level ? LEVELS_TILE : 1u << level;
-	if (tiles_begin(&mesh->low, width, height, LOW_TILE) && tiles_begin(&mesh->levels, width, height, levels_tile))
+	if (tiles_begin(&mesh->low, width, height, LOW_TILE, LOW_TILE) &&
+		tiles_begin(&mesh->levels, width, height, levels_tile, levels_tile))
 		return 0;
 	return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", width, height);
 }
@@ -232,7 +233,7 @@ int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_or
 {
 	const struct plan *plan = mesh->plan;
 	struct sort sort = {.mesh = mesh, .phase = phase, .tears = tears};
-	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE))
+	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE, FOLD_TILE))
 		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
 	mesh->keep_order = keep_order;
 	pool_run(mesh->pool, find_kinds, &sort, warp_items(mesh));

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* What the mesh knows of one triangle, for warp_*.c only. */
+/* What the mesh knows of one triangle, for those who sort and draw it. */
 #ifndef PURSUIT_ENGINE_WARP_TRIANGLE_H
 #define PURSUIT_ENGINE_WARP_TRIANGLE_H
 
@@ -70,6 +70,15 @@ static inline bool stretches(struct map map, float limit)
 	bool below = map.norm <= 2.0f * squared &&
 				 squared * squared - squared * map.norm + map.determinant * map.determinant >= 0.0f;
 	return !below;
+}
+
+static inline bool warp_triangle_rests(const struct warp_mesh *mesh, const uint32_t *index)
+{
+	const struct plan_vertex *vertices = mesh->plan->vertices;
+	for (int i = 0; i < 3; i++)
+		if (vertices[index[i]].ux != 0.0f || vertices[index[i]].uy != 0.0f)
+			return false;
+	return true;
 }
 
 static inline struct box triangle_box(const struct plan_vertex *vertices, const uint32_t *index, float phase,

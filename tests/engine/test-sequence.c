@@ -267,7 +267,7 @@ static bool is_planned_alike(const struct sequence *sequence)
 static void forget_shown(const struct engine *engine)
 {
 	if (strcmp(kind, "cpu") != 0)
-		gl_of(engine)->shown.holds = false;
+		gl_of(engine)->shown.number = 0;
 }
 
 /* What the second engine might know of what was before. */

@@ -122,7 +122,7 @@ static int plain_show(struct engine *own, enum engine_show what, double phase, e
 	if (result < 0)
 		return result;
 	fold_all(&own->mesh, (float)phase, own->has_depth);
-	gl_of(own)->shown.holds = false;
+	gl_of(own)->shown.number = 0;
 	own->job.picture = *picture;
 	own->job.phase = phase;
 	*picture = PICTURE_SHOWN;

@@ -34,7 +34,7 @@ static uint32_t lesser(uint32_t a, uint32_t b)
 static void halve_tiles(void *context, uint32_t item, uint32_t thread)
 {
 	const struct work *work = context;
-	const uint32_t tile = work->tiles->tile >> work->shift, bottom = lesser((item + 1) * tile, work->to->height);
+	const uint32_t tile = work->tiles->tile_height >> work->shift, bottom = lesser((item + 1) * tile, work->to->height);
 	uint32_t first, end;
 	for (uint32_t y = item * tile; y < bottom; y++) {
 		const int64_t middle = 2 * (int64_t)y;
@@ -62,7 +62,7 @@ static void spline_weights(float f, float w[4])
 static void smooth_tiles(void *context, uint32_t item, uint32_t thread)
 {
 	const struct work *work = context;
-	const uint32_t tile = work->tiles->tile, bottom = lesser((item + 1) * tile, work->to->height);
+	const uint32_t tile = work->tiles->tile_height, bottom = lesser((item + 1) * tile, work->to->height);
 	uint32_t first, end;
 	for (uint32_t y = item * tile; y < bottom; y++) {
 		const int64_t base = y >> work->shift;

@@ -51,6 +51,7 @@ static void delete_objects(struct executor_gl *executor)
 	gl->DeleteVertexArrays(1, &executor->no_attributes);
 	tile_buffer_finish(&executor->level_tiles, gl);
 	gl_layers_finish(&executor->layers, gl);
+	gl_shown_finish(&executor->shown, gl);
 	warp_buffers_finish(&executor->buffers, gl);
 	stream_finish(&executor->stream, gl);
 	readback_finish(&executor->readback, gl);
@@ -68,7 +69,6 @@ static void destroy(struct executor **executor)
 	delete_objects(gone);
 	context_destroy(&gone->context);
 	pool_destroy(&gone->base.pool);
-	tiles_finish(&gone->shown.changed);
 	contents_finish(&gone->contents);
 	free(gone->intake.hashes[0]);
 	free(gone->intake.hashes[1]);
@@ -134,6 +134,7 @@ static uint64_t count_bytes(const struct executor_gl *executor)
 		bytes += target_bytes(&executor->levels[i]);
 	bytes += executor->buffers.vertices.bytes + executor->buffers.indices.bytes;
 	bytes += executor->level_tiles.vertices.bytes + gl_layers_bytes(&executor->layers);
+	bytes += executor->shown.rectangles.vertices.bytes;
 	bytes += stream_bytes(&executor->stream) + readback_bytes(&executor->readback);
 	return bytes + analysis_bytes(&executor->analysis);
 }

@@ -11,23 +11,13 @@
 #include "daemon/engine/gl/layers.h"
 #include "daemon/engine/gl/program.h"
 #include "daemon/engine/gl/readback.h"
+#include "daemon/engine/gl/shown.h"
 #include "daemon/engine/gl/stream.h"
 #include "daemon/engine/gl/target.h"
 #include "daemon/engine/gl/tile_hash.h"
 #include "daemon/engine/gl/timer.h"
 #include "daemon/engine/gl/warp_buffers.h"
 #include "daemon/engine/state.h"
-
-/*
- * What the picture SHOWN holds of the last warp, so that what does not move need not be drawn again for the next
- * in-between of the same real frame.
- */
-struct shown {
-	bool holds;              /* anything of use */
-	enum picture_id picture; /* that was warped */
-	uint64_t begun;          /* the mesh */
-	struct tiles changed;    /* where others may have drawn over what does not move: folds, the UI */
-};
 
 /* Which tiles the textures of ORIGINAL and UI hold, and what is on its way there: pass_upload.c. */
 struct gl_intake {
@@ -54,7 +44,7 @@ struct executor_gl {
 	struct contents contents;
 	struct tile_buffer level_tiles;
 	struct gl_layers layers;
-	struct shown shown;
+	struct gl_shown shown;
 	GLuint copy_framebuffer;         /* of the texture that a picture is copied to */
 	GLuint no_attributes;            /* a vertex array with nothing in it */
 	GLuint depth, depth_framebuffer; /* SHOWN with depth; 0 until the first fold */
@@ -82,6 +72,13 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
  * negative errno with a sentence.
  */
 int gl_picture(struct engine *engine, enum picture_id id, const struct target **picture, struct error *error);
+
+/*
+ * Copies pixels to the same places of another picture of that size, as blending and scissor are set. 0, or -EIO with a
+ * sentence.
+ */
+int gl_copy_tiles(struct engine *engine, const struct target *from, const struct target *to,
+				  const struct tile_buffer *tiles, struct error *error);
 
 /* L for the program in use, which makes it of that level of the pyramid. */
 void low_bind(const struct engine *engine, const struct program *program, uint32_t level);

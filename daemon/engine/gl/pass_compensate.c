@@ -27,6 +27,21 @@ uint64_t gl_layers_bytes(const struct gl_layers *layers)
 		   layers->buffers.indices.bytes;
 }
 
+int gl_copy_tiles(struct engine *engine, const struct target *from, const struct target *to,
+				  const struct tile_buffer *tiles, struct error *error)
+{
+	const struct gl *gl = table_of(engine);
+	const struct program *program = program_use(&gl_of(engine)->programs, gl, PROGRAM_COPY, 0, error);
+	if (!program)
+		return -EIO;
+	target_draw_to(to, gl);
+	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
+	gl->BindTexture(GL_TEXTURE_2D, from->texture);
+	gl->Uniform2f(program->size, (float)to->width, (float)to->height);
+	tile_buffer_draw(tiles, gl);
+	return 0;
+}
+
 /* The tiles in which the three differ. */
 static int copy_tiles(struct engine *engine, const struct target *from, const struct target *to, struct error *error)
 {
@@ -36,15 +51,7 @@ static int copy_tiles(struct engine *engine, const struct target *from, const st
 		target_copy(from, to, gl);
 		return 0;
 	}
-	const struct program *program = program_use(&gl_of(engine)->programs, gl, PROGRAM_COPY, 0, error);
-	if (!program)
-		return -EIO;
-	target_draw_to(to, gl);
-	gl->ActiveTexture(GL_TEXTURE0 + UNIT_PICTURE);
-	gl->BindTexture(GL_TEXTURE_2D, from->texture);
-	gl->Uniform2f(program->size, (float)to->width, (float)to->height);
-	tile_buffer_draw(&layers->tiles, gl);
-	return 0;
+	return gl_copy_tiles(engine, from, to, &layers->tiles, error);
 }
 
 static void bind(const struct engine *engine, const struct program *program)
@@ -124,7 +131,7 @@ static int load(struct engine *engine, struct gl_layers *layers, struct error *e
 	const struct gl *gl = table_of(engine);
 	if (layers->variant & VARIANT_WEIGHT_ONE)
 		return 0;
-	int result = warp_buffers_update(&layers->buffers, gl, &engine->mesh, NULL, &engine->report.bytes_up, error);
+	int result = warp_buffers_update(&layers->buffers, gl, &engine->mesh, NULL, NULL, &engine->report.bytes_up, error);
 	return result == 0 ? tile_buffer_load(&layers->tiles, gl, &engine->mesh.low, error) : result;
 }
 

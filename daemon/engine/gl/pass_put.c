@@ -9,14 +9,15 @@ static int run(struct engine *engine, struct error *error)
 	const struct gl *gl = table_of(engine);
 	const struct bitmap *from = &engine->pixels.shown;
 	struct target *shown = picture_of(engine, PICTURE_SHOWN);
-	gl_of(engine)->shown.holds = false;
-	int result = target_resize(shown, gl, from->width, from->height, error);
+	int result = gl_shown_begin(engine, error);
 	if (result < 0)
 		return result;
+	tiles_mark_all(&gl_of(engine)->shown.written);
 	gl->ActiveTexture(GL_TEXTURE0);
 	gl->BindTexture(GL_TEXTURE_2D, shown->texture);
 	gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)from->width, (GLsizei)from->height, gl->pixel_format,
 					  gl->pixel_type, from->data);
+	gl_shown_end(engine);
 	engine->report.bytes_up += 4 * (uint64_t)from->width * from->height;
 	return 0;
 }

@@ -6,6 +6,7 @@
 
 #include <errno.h>
 
+#include "daemon/engine/warp_triangle.h"
 #include "shaders/limits.h"
 
 /* SHOWN may be another texture than last time even if the size is the same: it is attached anew. */
@@ -96,35 +97,45 @@ static int draw(struct engine *engine, struct error *error)
 	return mesh->folded.count || mesh->folded_torn.count ? draw_folded(engine, error) : 0;
 }
 
-/* Where SHOWN may not hold what does not move; NULL: it may not hold it anywhere. */
-static const struct tiles *changed(const struct engine *engine)
+static void mark_list(const struct warp_mesh *mesh, struct warp_list list, bool still, float phase, struct tiles *tiles)
 {
-	const struct shown *shown = &gl_of(engine)->shown;
-	bool same = shown->holds && shown->begun == engine->mesh.begun && shown->picture == engine->job.picture;
-	return same ? &shown->changed : NULL;
+	const uint32_t *index = mesh->lists + list.first;
+	for (const uint32_t *end = index + list.count; index < end; index += 3)
+		if (still || !warp_triangle_rests(mesh, index))
+			tiles_mark(tiles, triangle_box(mesh->plan->vertices, index, phase, 0.0f));
 }
 
-/* Without memory for the tiles all is drawn anew the next time. */
-static void note_shown(struct engine *engine)
+static bool any_rests(const struct warp_mesh *mesh)
 {
-	struct shown *shown = &gl_of(engine)->shown;
+	const uint32_t *index = mesh->lists + mesh->plain.first, *end = index + mesh->plain.count;
+	while (index < end && !warp_triangle_rests(mesh, index))
+		index += 3;
+	return index < end;
+}
+
+/* The tiles that not only triangles touch that rest; false: those are all. */
+static bool find_moving(const struct engine *engine, struct tiles *moving)
+{
 	const struct warp_mesh *mesh = &engine->mesh;
-	shown->picture = engine->job.picture;
-	shown->begun = mesh->begun;
-	shown->holds = tiles_copy(&shown->changed, &mesh->folds);
+	const float phase = (float)engine->job.phase;
+	if (any_rests(mesh)) {
+		mark_list(mesh, mesh->plain, false, phase, moving);
+		mark_list(mesh, mesh->torn, true, phase, moving);
+		mark_list(mesh, mesh->folded, true, phase, moving);
+		mark_list(mesh, mesh->folded_torn, true, phase, moving);
+		tiles_sum(moving);
+		return moving->count < moving->columns * moving->rows;
+	}
+	tiles_mark_all(moving);
+	return false;
 }
 
-static int run(struct engine *engine, struct error *error)
+/* `moving`: NULL, or the tiles that have to be drawn; others that are drawn over with them are marked in `touched`. */
+static int draw_mesh(struct engine *engine, const struct tiles *moving, struct tiles *touched, struct error *error)
 {
-	struct executor_gl *executor = gl_of(engine);
 	const struct gl *gl = table_of(engine);
-	const struct tiles *kept = changed(engine);
-	executor->shown.holds = false;
-	int result = target_resize(picture_of(engine, PICTURE_SHOWN), gl, engine->width, engine->height, error);
-	if (result == 0 && engine->mesh.folds.count)
-		result = make_depth(engine, error);
-	if (result == 0)
-		result = warp_buffers_update(&executor->buffers, gl, &engine->mesh, kept, &engine->report.bytes_up, error);
+	int result = warp_buffers_update(&gl_of(engine)->buffers, gl, &engine->mesh, moving, touched,
+									 &engine->report.bytes_up, error);
 	if (result == 0)
 		result = bind_picture(engine, error);
 	if (result < 0)
@@ -132,8 +143,26 @@ static int run(struct engine *engine, struct error *error)
 	gl->Enable(GL_CULL_FACE);
 	result = draw(engine, error);
 	gl->Disable(GL_CULL_FACE);
+	return result;
+}
+
+static int run(struct engine *engine, struct error *error)
+{
+	struct gl_shown *shown = &gl_of(engine)->shown;
+	int result = gl_shown_begin(engine, error);
+	if (result < 0)
+		return result;
+	const bool some_rest = find_moving(engine, &shown->moving);
+	if (some_rest)
+		gl_shown_keep(engine, engine->job.picture);
+	if (engine->mesh.folds.count)
+		result = make_depth(engine, error);
 	if (result == 0)
-		note_shown(engine);
+		result = draw_mesh(engine, some_rest ? &shown->moving : NULL, &shown->copied, error);
+	if (result == 0)
+		result = gl_shown_copy(engine, engine->job.picture, error);
+	if (result == 0)
+		gl_shown_end(engine);
 	return result;
 }
 

@@ -16,7 +16,6 @@ static const struct {
 	[PROGRAM_COMPENSATE] = {"compensate", shader_grid_vert, shader_compensate_frag},
 	[PROGRAM_COPY] = {"copy", shader_tiles_vert, shader_copy_frag},
 	[PROGRAM_WARP] = {"warp", shader_grid_vert, shader_warp_frag},
-	[PROGRAM_UI] = {"ui", shader_rectangle_vert, shader_ui_frag},
 	[PROGRAM_ANALYSE] = {"analyse", .compute = shader_analyse_comp},
 };
 

@@ -4,10 +4,10 @@
 #include "daemon/engine/gl/warp_buffers.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
+#include "daemon/engine/warp_triangle.h"
 #include "shaders/limits.h"
 
 /* Vertex arrays remember the buffers that are bound to them, whatever memory these have. */
@@ -43,54 +43,40 @@ static int send_vertices(struct warp_buffers *buffers, const struct gl *gl, cons
 	return dynamic_unmap(gl, GL_ARRAY_BUFFER, error);
 }
 
-static bool is_still(const struct plan_vertex *vertex)
-{
-	return vertex->ux == 0.0f && vertex->uy == 0.0f;
-}
-
-static bool stays(const struct plan *plan, const uint32_t *index, const struct tiles *kept)
-{
-	struct box box = {INFINITY, INFINITY, -INFINITY, -INFINITY};
-	for (int i = 0; i < 3; i++) {
-		const struct plan_vertex *vertex = &plan->vertices[index[i]];
-		if (!is_still(vertex))
-			return false;
-		box.left = fminf(box.left, vertex->x);
-		box.right = fmaxf(box.right, vertex->x);
-		box.top = fminf(box.top, vertex->y);
-		box.bottom = fmaxf(box.bottom, vertex->y);
-	}
-	return !tiles_touch(kept, box);
-}
-
 /* The triangles of mesh->plain that have to be drawn; how many indices. */
-static uint32_t put_moving(const struct warp_mesh *mesh, const struct tiles *kept, uint32_t *to)
+static uint32_t put_moving(const struct warp_mesh *mesh, const struct tiles *moving, struct tiles *touched,
+						   uint32_t *to)
 {
 	const uint32_t *from = mesh->lists + mesh->plain.first;
 	uint32_t count = 0;
-	for (uint32_t i = 0; i < mesh->plain.count; i += 3)
-		if (!stays(mesh->plan, from + i, kept)) {
-			memcpy(to + count, from + i, 3 * sizeof(*to));
-			count += 3;
+	for (uint32_t i = 0; i < mesh->plain.count; i += 3) {
+		if (warp_triangle_rests(mesh, from + i)) {
+			const struct box box = triangle_box(mesh->plan->vertices, from + i, 0.0f, 0.0f);
+			if (!tiles_touch(moving, box))
+				continue;
+			tiles_mark(touched, box);
 		}
+		memcpy(to + count, from + i, 3 * sizeof(*to));
+		count += 3;
+	}
 	return count;
 }
 
 static int send_lists(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh,
-					  const struct tiles *kept, uint64_t *sent, struct error *error)
+					  const struct tiles *moving, struct tiles *touched, uint64_t *sent, struct error *error)
 {
 	const size_t bytes = (size_t)mesh->list_count * sizeof(*mesh->lists);
 	gl->BindVertexArray(buffers->array);
 	const size_t most = 2 * (size_t)mesh->plan->index_count * sizeof(*mesh->lists);
 	uint32_t *to = bytes ? dynamic_map(&buffers->indices, gl, GL_ELEMENT_ARRAY_BUFFER, bytes, most, error) : NULL;
 	buffers->plain = mesh->plain;
-	buffers->split = kept != NULL;
+	buffers->split = moving != NULL;
 	if (!to)
 		return bytes ? -ENOMEM : 0;
-	if (kept) {
+	if (moving) {
 		const uint32_t first = mesh->plain.first, end = first + mesh->plain.count;
 		memcpy(to, mesh->lists, first * sizeof(*to));
-		buffers->plain.count = put_moving(mesh, kept, to + first);
+		buffers->plain.count = put_moving(mesh, moving, touched, to + first);
 		memcpy(to + end, mesh->lists + end, (mesh->list_count - end) * sizeof(*to));
 	} else {
 		memcpy(to, mesh->lists, bytes);
@@ -100,15 +86,15 @@ static int send_lists(struct warp_buffers *buffers, const struct gl *gl, const s
 }
 
 int warp_buffers_update(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh,
-						const struct tiles *kept, uint64_t *sent, struct error *error)
+						const struct tiles *moving, struct tiles *touched, uint64_t *sent, struct error *error)
 {
 	int result = 0;
 	if (!buffers->array)
 		make_array(buffers, gl);
 	if (buffers->begun != mesh->begun)
 		result = send_vertices(buffers, gl, mesh->plan, sent, error);
-	if (result == 0 && (buffers->sorted != mesh->sorted || buffers->split || kept))
-		result = send_lists(buffers, gl, mesh, kept, sent, error);
+	if (result == 0 && (buffers->sorted != mesh->sorted || buffers->split || moving))
+		result = send_lists(buffers, gl, mesh, moving, touched, sent, error);
 	buffers->begun = result == 0 ? mesh->begun : 0;
 	buffers->sorted = result == 0 ? mesh->sorted : 0;
 	return result;

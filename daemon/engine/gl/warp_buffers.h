@@ -17,12 +17,12 @@ struct warp_buffers {
 };
 
 /*
- * Makes them hold the mesh; adds to *sent how many bytes that took. `kept`: NULL, or where the target may hold
- * something else than it did when it was drawn with the same vertices: triangles of mesh->plain that do not move need
- * not be drawn outside of it. 0, or a negative errno with a sentence.
+ * Makes them hold the mesh; adds to *sent how many bytes that took. `moving`: NULL, or where it has to be drawn:
+ * triangles of mesh->plain that rest are left out elsewhere, and what they touch is marked in `touched` (of the same
+ * tiles) where they are not. 0, or a negative errno with a sentence.
  */
 int warp_buffers_update(struct warp_buffers *buffers, const struct gl *gl, const struct warp_mesh *mesh,
-						const struct tiles *kept, uint64_t *sent, struct error *error);
+						const struct tiles *moving, struct tiles *touched, uint64_t *sent, struct error *error);
 void warp_buffers_finish(struct warp_buffers *buffers, const struct gl *gl);
 
 /* Draws a list of the mesh that the buffers hold. */

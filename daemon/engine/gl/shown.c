@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+#include "daemon/engine/gl/shown.h"
+
+#include <errno.h>
+
+#include "daemon/engine/gl/executor_gl.h"
+
+static int begin_tiles(struct gl_shown *shown, uint32_t width, uint32_t height, struct error *error)
+{
+	struct tiles *const all[] = {&shown->moving, &shown->copied, &shown->written};
+	for (int i = 0; i < 3; i++)
+		if (!tiles_begin(all[i], width, height, TILE_WIDTH, TILE_HEIGHT))
+			return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", width, height);
+	return 0;
+}
+
+int gl_shown_begin(struct engine *engine, struct error *error)
+{
+	struct gl_shown *shown = &gl_of(engine)->shown;
+	struct target *target = picture_of(engine, PICTURE_SHOWN);
+	if (target->width != engine->width || target->height != engine->height || engine->params.leave_nothing_out)
+		shown->number = 0;
+	contents_open(&gl_of(engine)->contents, shown->number, &shown->sheet);
+	shown->number = 0;
+	shown->numbers = shown->sheet.after;
+	const int result = begin_tiles(shown, engine->width, engine->height, error);
+	return result < 0 ? result : target_resize(target, table_of(engine), engine->width, engine->height, error);
+}
+
+void gl_shown_end(struct engine *engine)
+{
+	struct gl_shown *shown = &gl_of(engine)->shown;
+	shown->number = engine_new_number(engine);
+	contents_close(&gl_of(engine)->contents, shown->number, &shown->sheet);
+}
+
+void gl_shown_keep(struct engine *engine, enum picture_id id)
+{
+	struct gl_shown *shown = &gl_of(engine)->shown;
+	const struct contents *contents = &gl_of(engine)->contents;
+	for (uint32_t tile = 0; tile < contents->columns * contents->rows; tile++)
+		if (!shown->moving.marked[tile] && !sheet_has(&shown->sheet, tile, contents_of(contents, id, tile)))
+			shown->copied.marked[tile] = 1;
+}
+
+int gl_shown_copy(struct engine *engine, enum picture_id id, struct error *error)
+{
+	struct gl_shown *shown = &gl_of(engine)->shown;
+	const struct target *picture;
+	for (uint32_t tile = 0; tile < shown->copied.columns * shown->copied.rows; tile++) {
+		shown->copied.marked[tile] &= !shown->moving.marked[tile];
+		shown->written.marked[tile] = shown->copied.marked[tile] | shown->moving.marked[tile];
+	}
+	tiles_sum(&shown->copied);
+	if (!shown->copied.count)
+		return 0;
+	int result = gl_picture(engine, id, &picture, error);
+	if (result == 0)
+		result = tile_buffer_load(&shown->rectangles, table_of(engine), &shown->copied, error);
+	return result < 0 ? result
+					  : gl_copy_tiles(engine, picture, picture_of(engine, PICTURE_SHOWN), &shown->rectangles, error);
+}
+
+void gl_shown_finish(struct gl_shown *shown, const struct gl *gl)
+{
+	tiles_finish(&shown->moving);
+	tiles_finish(&shown->copied);
+	tiles_finish(&shown->written);
+	tile_buffer_finish(&shown->rectangles, gl);
+}
