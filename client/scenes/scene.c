@@ -77,6 +77,14 @@ static bool create_content(struct scene *scene, char *error, size_t error_size)
 	return ok;
 }
 
+static bool is_size(uint32_t width, uint32_t height, char *error, size_t error_size)
+{
+	if (width >= 1 && height >= 1 && width <= 16384 && height <= 16384)
+		return true;
+	snprintf(error, error_size, "the size of a scene is 1 to 16384, not %ux%u", width, height);
+	return false;
+}
+
 struct scene *scene_create(const char *name, uint32_t width, uint32_t height, scene_gl_lookup lookup, char *error,
 						   size_t error_size)
 {
@@ -90,10 +98,8 @@ struct scene *scene_create(const char *name, uint32_t width, uint32_t height, sc
 		snprintf(error, error_size, "there is no scene \"%s\"", name ? name : "");
 		return NULL;
 	}
-	if (width < 1 || height < 1 || width > 16384 || height > 16384) {
-		snprintf(error, error_size, "the size of a scene is 1 to 16384, not %ux%u", width, height);
+	if (!is_size(width, height, error, error_size))
 		return NULL;
-	}
 	struct scene *scene = calloc(1, sizeof(*scene));
 	if (!scene || !scene_gl_init(&scene->gl, lookup, error, error_size)) {
 		if (!scene)
@@ -123,6 +129,21 @@ void scene_destroy(struct scene **scene_pointer)
 	free(scene->answers);
 	free(scene);
 	*scene_pointer = NULL;
+}
+
+bool scene_resize(struct scene *scene, uint32_t width, uint32_t height, char *error, size_t error_size)
+{
+	char unused[1];
+	if (!error) {
+		error = unused;
+		error_size = sizeof(unused);
+	}
+	stage_destroy_targets(scene);
+	if (!is_size(width, height, error, error_size))
+		return false;
+	scene->width = width;
+	scene->height = height;
+	return stage_create_targets(scene, error, error_size);
 }
 
 /* Beyond this a double has no fractions of a second left; the scenes stand still there. */
@@ -194,7 +215,7 @@ bool scene_render(struct scene *scene, const struct scene_request *request, stru
 				  struct scene_camera *camera)
 {
 	if (!isfinite(request->time) || !isfinite(request->time_previous) ||
-		(request->forward && !isfinite(request->time_next)))
+		(request->forward && !isfinite(request->time_next)) || !scene->has_targets)
 		return false;
 	if (request->forward && !stage_create_forward(scene))
 		return false;

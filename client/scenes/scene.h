@@ -69,6 +69,13 @@ struct scene *scene_create(const char *name, uint32_t width, uint32_t height, sc
 						   size_t error_size);
 void scene_destroy(struct scene **scene);
 
+/*
+ * Another size, 1 to 16384, of all pictures from now on, the same bits as of a new scene, for a small part of the work
+ * of making one. False with a sentence in error (error_size bytes, may be NULL); then nothing is rendered until another
+ * size is taken.
+ */
+bool scene_resize(struct scene *scene, uint32_t width, uint32_t height, char *error, size_t error_size);
+
 /* Renders one moment. The same request gives the same bits on one renderer. */
 bool scene_render(struct scene *scene, const struct scene_request *request, struct scene_textures *textures,
 				  struct scene_camera *camera);

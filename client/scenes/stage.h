@@ -106,7 +106,7 @@ struct scene {
 	GLuint ui;
 	GLuint depth_buffer;
 	GLuint frame, forward_frame, ui_frame;
-	bool has_forward, ui_drawn;
+	bool has_targets, has_forward, ui_drawn;
 	bool drawn; /* the targets hold `drawn_now` against `drawn_previous` */
 	struct stage_plan drawn_plan;
 	struct stage_pose drawn_now, drawn_previous;

@@ -74,6 +74,7 @@ bool stage_create_targets(struct scene *scene, char *error, size_t error_size)
 				 scene->width, scene->height);
 		return false;
 	}
+	scene->has_targets = true;
 	return true;
 }
 
@@ -95,6 +96,9 @@ void stage_destroy_targets(struct scene *scene)
 	gl->DeleteRenderbuffers(1, &scene->depth_buffer);
 	gl->DeleteTextures(STAGE_ATTACHMENTS, scene->targets);
 	gl->DeleteTextures(1, &scene->ui);
+	memset(scene->targets, 0, sizeof(scene->targets));
+	scene->ui = scene->depth_buffer = scene->frame = scene->forward_frame = scene->ui_frame = 0;
+	scene->has_targets = scene->has_forward = scene->ui_drawn = scene->drawn = false;
 }
 
 /* One kind of picture to read: what is wanted, and its pixels. */
@@ -151,7 +155,7 @@ static void read_one(const struct scene *scene, const struct read_job *job, uint
 bool scene_read(struct scene *scene, const struct scene_pixels *pixels)
 {
 	const struct scene_gl *gl = &scene->gl;
-	if ((pixels->ui && !scene->ui) || (pixels->forward && !scene->has_forward))
+	if (!scene->has_targets || (pixels->ui && !scene->ui) || (pixels->forward && !scene->has_forward))
 		return false;
 	uint8_t *raw = malloc((size_t)scene->width * scene->height * 16);
 	if (!raw)

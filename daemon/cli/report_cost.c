@@ -34,9 +34,8 @@ static uint32_t scaled(uint32_t size, uint32_t quarter)
 
 /* A frame whose motion can be taken away. */
 struct still {
-	struct scene_source *source;
-	struct frame frame;
-	uint8_t *motion; /* a copy of the plane */
+	struct frame frame; /* its planes are the source's */
+	uint8_t *motion;    /* a copy of the plane */
 	int index;
 };
 
@@ -48,16 +47,14 @@ static double now_ms(void)
 static void still_finish(struct still *still)
 {
 	free(still->motion);
-	scene_source_destroy(&still->source);
 }
 
-static int still_init(struct still *still, struct arg_size size, uint32_t rate, struct error *error)
+static int still_init(struct still *still, struct scene_source *source, struct arg_size size, struct error *error)
 {
-	const struct scene_source_params params = {.scene = SCENE, .size = size, .rate = {rate ? rate : 1, 1}};
-	*still = (struct still){.source = scene_source_create(&params, error)};
-	if (!still->source)
+	*still = (struct still){.motion = NULL};
+	if (!scene_source_resize(source, &size, error))
 		return -EIO;
-	if (!scene_source_frame(still->source, FRAME, &still->frame))
+	if (!scene_source_frame(source, FRAME, &still->frame))
 		return error_set(error, -EIO, "GL failed while scene %s was rendered", SCENE);
 	still->index = frame_find_plane(&still->frame.header, PURSUIT_ROLE_MOTION);
 	const size_t bytes = still->frame.header.planes[still->index].size;
@@ -141,11 +138,11 @@ static void fit(struct report_cost *cost)
 	cost->r2 = xx > 0.0 && yy > 0.0 ? xy * xy / (xx * yy) : 0.0;
 }
 
-static int measure_share(struct engine *engine, uint32_t n, uint32_t rate, struct report_cost *cost,
+static int measure_share(struct engine *engine, struct scene_source *source, uint32_t n, struct report_cost *cost,
 						 struct error *error)
 {
 	struct still still;
-	int result = still_init(&still, cost->size, rate, error);
+	int result = still_init(&still, source, cost->size, error);
 	for (uint32_t step = STEPS + 1; step-- > 0 && result == 0;) {
 		double ms = 0.0;
 		rest(&still, (double)step / STEPS);
@@ -156,7 +153,7 @@ static int measure_share(struct engine *engine, uint32_t n, uint32_t rate, struc
 	return result;
 }
 
-static int measure_pixels(struct engine *engine, const struct report_work *work, uint32_t rate,
+static int measure_pixels(struct engine *engine, struct scene_source *source, const struct report_work *work,
 						  struct report_cost *cost, struct error *error)
 {
 	int result = 0;
@@ -164,7 +161,7 @@ static int measure_pixels(struct engine *engine, const struct report_work *work,
 		const struct arg_size size = {scaled(work->size.width, quarters[i]), scaled(work->size.height, quarters[i])};
 		struct still still;
 		double ms = 0.0;
-		result = still_init(&still, size, rate, error);
+		result = still_init(&still, source, size, error);
 		if (result == 0)
 			result = time_still(engine, &still, work->n, &ms, error);
 		add(cost, 1e-6 * size.width * size.height, ms);
@@ -191,10 +188,13 @@ int report_measure_cost(struct report *report, struct error *error)
 	if (!variant || work->recording || interrupt_seen())
 		return 0;
 	const uint32_t rate = (uint32_t)(report->options.refresh.numerator / report->options.refresh.denominator) / work->n;
+	const struct scene_source_params params = {.scene = SCENE, .size = work->size, .rate = {rate ? rate : 1, 1}};
 	struct report_cost share = {.size = work->size}, pixels = {.size = {0, 0}};
-	int result = measure_share(variant->engine, work->n, rate, &share, error);
+	struct scene_source *source = scene_source_create(&params, error);
+	int result = source ? measure_share(variant->engine, source, work->n, &share, error) : -EIO;
 	if (result == 0)
-		result = measure_pixels(variant->engine, work, rate, &pixels, error);
+		result = measure_pixels(variant->engine, source, work, &pixels, error);
+	scene_source_destroy(&source);
 	if (result < 0 || interrupt_seen())
 		return result;
 	fit(&share);

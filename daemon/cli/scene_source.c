@@ -3,6 +3,7 @@
 
 #include "scene_source.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +65,19 @@ static bool create_fine(struct scene_source *source, struct error *error)
 	return source->fine_pixels || error_set(error, -ENOMEM, "out of memory for pictures of %ux%u", width, height) == 0;
 }
 
+static void release_pixels(struct scene_source *source)
+{
+	free(source->pixels.color);
+	free(source->pixels.ui);
+	free(source->pixels.depth);
+	free(source->pixels.backward);
+	free(source->pixels.forward);
+	free(source->pixels.object_id);
+	free(source->fine_pixels);
+	source->pixels = (struct scene_pixels){0};
+	source->fine_pixels = NULL;
+}
+
 struct scene_source *scene_source_create(const struct scene_source_params *params, struct error *error)
 {
 	if (!scene_exists(params->scene)) {
@@ -104,16 +118,23 @@ void scene_source_destroy(struct scene_source **source)
 			scene_destroy(&old->fine);
 	}
 	gl_context_destroy(&old->context);
-	free(old->pixels.color);
-	free(old->pixels.ui);
-	free(old->pixels.depth);
-	free(old->pixels.backward);
-	free(old->pixels.forward);
-	free(old->pixels.object_id);
+	release_pixels(old);
 	free(old->planes);
-	free(old->fine_pixels);
 	free(old);
 	*source = NULL;
+}
+
+bool scene_source_resize(struct scene_source *source, const struct arg_size *size, struct error *error)
+{
+	assert(!source->fine);
+	source->params.size = *size;
+	release_pixels(source);
+	if (!gl_context_make_current(source->context))
+		return error_set(error, -EIO, "the GL context of the scene is lost") == 0;
+	if (!scene_resize(source->scene, size->width, size->height, error->text, sizeof(error->text)))
+		return false;
+	return allocate(source) ||
+		   error_set(error, -ENOMEM, "out of memory for pictures of %ux%u", size->width, size->height) == 0;
 }
 
 static void add_plane(struct pursuit_frame_header *header, uint32_t role, uint32_t format, const struct arg_size *size)

@@ -37,6 +37,9 @@ struct scene_source;
 /* NULL with a sentence. */
 struct scene_source *scene_source_create(const struct scene_source_params *params, struct error *error);
 void scene_source_destroy(struct scene_source **source);
+/* Another size from the next frame on, of a source with antialias 0 or 1. False with a sentence: good for nothing more.
+ */
+bool scene_source_resize(struct scene_source *source, const struct arg_size *size, struct error *error);
 
 /* Real frame `index` (id index + 1). Its planes belong to the source, valid until the next call. False: GL failed. */
 bool scene_source_frame(struct scene_source *source, uint64_t index, struct frame *frame);

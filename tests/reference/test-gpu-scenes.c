@@ -19,17 +19,17 @@ static struct engine *engine;
 static void read_frames(const char *name)
 {
 	static const struct scene_moment moments[] = {{320, 180, 0.7, 0.025, false}, {336, 203, 2.35, 0.1, false}};
-	for (size_t i = 0; i < 2 && frame_count < MAX_FRAMES; i++) {
+	char text[256] = "";
+	struct scene *scene = scene_create(name, 1, 1, test_context_lookup, text, sizeof(text));
+	for (size_t i = 0; i < 2 && frame_count < MAX_FRAMES && scene; i++) {
 		const struct scene_moment *moment = &moments[i];
 		struct scene_case *frame = &frames[frame_count++];
-		char text[256] = "";
-		struct scene *scene =
-			scene_create(name, moment->width, moment->height, test_context_lookup, text, sizeof(text));
 		snprintf(frame->what, sizeof(frame->what), "%s at %g s", name, moment->time);
-		CHECK_STRING(text, "");
-		CHECK(scene && scene_frame_read(&frame->read, scene, moment));
-		scene_destroy(&scene);
+		CHECK(scene_resize(scene, moment->width, moment->height, text, sizeof(text)));
+		CHECK(scene_frame_read(&frame->read, scene, moment));
 	}
+	CHECK_STRING(text, "");
+	scene_destroy(&scene);
 }
 
 /* All frames are rendered, and the scenes' context is gone, before the engine makes its own. */

@@ -7,6 +7,8 @@
 #include "picture.h"
 #include "tests/test.h"
 
+static struct scene *kept[16]; /* as listed; made once, since most of the work is the same for all sizes */
+
 static struct scene *create(const char *name, uint32_t width, uint32_t height)
 {
 	char error[256] = "";
@@ -15,6 +17,17 @@ static struct scene *create(const char *name, uint32_t width, uint32_t height)
 		fprintf(stderr, "%s: %s\n", name, error);
 	CHECK(scene != NULL);
 	return scene;
+}
+
+static struct scene *take(const struct scene_info *info, uint32_t width, uint32_t height)
+{
+	char error[256] = "";
+	struct scene **scene = &kept[info - scene_list()];
+	if (!*scene)
+		*scene = create(info->name, width, height);
+	CHECK(scene_resize(*scene, width, height, error, sizeof(error)));
+	CHECK_STRING(error, "");
+	return *scene;
 }
 
 static void check_ranges(const struct picture *picture, const char *name)
@@ -44,11 +57,16 @@ static void check_ranges(const struct picture *picture, const char *name)
 static void same_request_gives_same_bits(void)
 {
 	for (const struct scene_info *info = scene_list(); info->name; info++) {
-		struct scene *scene = create(info->name, 160, 90), *twin = create(info->name, 160, 90);
-		struct picture first, again, elsewhere;
+		struct scene *scene = take(info, 33, 70), *twin = create(info->name, 160, 90);
+		struct picture first, again, elsewhere, small;
 		picture_init(&first, 160, 90);
 		picture_init(&again, 160, 90);
 		picture_init(&elsewhere, 160, 90);
+		/* One that has shown this moment in another size, and one that is new. */
+		picture_init(&small, 33, 70);
+		CHECK(picture_take(&small, scene, 6.99, 7.0, 7.01));
+		picture_finish(&small);
+		scene = take(info, 160, 90);
 		CHECK(picture_take(&first, scene, 6.99, 7.0, 7.01));
 		CHECK(picture_take(&again, scene, 31.0, 31.5, 31.6));
 		if (strcmp(info->name, "still") != 0)
@@ -60,9 +78,8 @@ static void same_request_gives_same_bits(void)
 		picture_finish(&first);
 		picture_finish(&again);
 		picture_finish(&elsewhere);
-		scene_destroy(&scene);
 		scene_destroy(&twin);
-		CHECK(scene == NULL);
+		CHECK(twin == NULL);
 	}
 }
 
@@ -73,7 +90,7 @@ static void any_size_and_time(void)
 									  {1e9, 1e9 + 0.02, 1e9}, {-1e300, 1e300, 1e308}, {500.0, 3.0, -40.0}};
 	for (const struct scene_info *info = scene_list(); info->name; info++) {
 		for (size_t s = 0; s < sizeof(sizes) / sizeof(sizes[0]); s++) {
-			struct scene *scene = create(info->name, sizes[s][0], sizes[s][1]);
+			struct scene *scene = take(info, sizes[s][0], sizes[s][1]);
 			struct picture picture;
 			picture_init(&picture, sizes[s][0], sizes[s][1]);
 			for (size_t t = 0; t < sizeof(times) / sizeof(times[0]) && (s == 2 || t < 1); t++) {
@@ -81,7 +98,6 @@ static void any_size_and_time(void)
 				check_ranges(&picture, info->name);
 			}
 			picture_finish(&picture);
-			scene_destroy(&scene);
 		}
 	}
 }
@@ -119,7 +135,7 @@ static void nothing_moves_in_still(void)
 static void no_time_no_motion(void)
 {
 	for (const struct scene_info *info = scene_list(); info->name; info++) {
-		struct scene *scene = create(info->name, 160, 90);
+		struct scene *scene = take(info, 160, 90);
 		struct picture picture;
 		picture_init(&picture, 160, 90);
 		size_t moved = 0;
@@ -131,14 +147,13 @@ static void no_time_no_motion(void)
 		}
 		CHECK_INT(moved, 0);
 		picture_finish(&picture);
-		scene_destroy(&scene);
 	}
 }
 
 static void ui_only_where_it_belongs(void)
 {
 	for (const struct scene_info *info = scene_list(); info->name; info++) {
-		struct scene *scene = create(info->name, 320, 180);
+		struct scene *scene = take(info, 320, 180);
 		struct picture picture;
 		bool wanted = strcmp(info->name, "hud") == 0 || strcmp(info->name, "rings") == 0;
 		size_t covered = 0;
@@ -151,7 +166,6 @@ static void ui_only_where_it_belongs(void)
 		struct scene_pixels missing = {.ui = picture.pixels.ui};
 		CHECK_INT(scene_read(scene, &missing), wanted);
 		picture_finish(&picture);
-		scene_destroy(&scene);
 	}
 }
 
@@ -181,6 +195,13 @@ static void bad_requests_are_refused(void)
 	struct scene *scene = create("still", 8, 8);
 	struct scene_request request = {.time = NAN};
 	CHECK(!scene_render(scene, &request, NULL, NULL));
+	request.time = 0.0;
+	CHECK(!scene_resize(scene, 10, 0, error, sizeof(error)));
+	CHECK_STRING(error, "the size of a scene is 1 to 16384, not 10x0");
+	CHECK(!scene_render(scene, &request, NULL, NULL));
+	CHECK(!scene_read(scene, &(struct scene_pixels){0}));
+	CHECK(scene_resize(scene, 9, 7, NULL, 0));
+	CHECK(scene_render(scene, &request, NULL, NULL));
 	request = (struct scene_request){.time_next = INFINITY, .forward = true};
 	CHECK(!scene_render(scene, &request, NULL, NULL));
 	scene_destroy(&scene);
@@ -200,6 +221,8 @@ int main(int argc, char **argv)
 	RUN(ui_only_where_it_belongs);
 	RUN(forward_only_when_asked);
 	RUN(bad_requests_are_refused);
+	for (int i = 0; i < 16; i++)
+		scene_destroy(&kept[i]);
 	test_context_finish(&context);
 	return test_result();
 }
