@@ -215,7 +215,7 @@ void configuration_print(FILE *out)
 	int group = -1;
 	fprintf(out, "# Settings of pursuitd, one `name = value` a line; these are the defaults.\n");
 	for (const struct option_row *row = option_table(); row->name; row++) {
-		char range[128];
+		char range[160];
 		if ((int)row->group != group) {
 			group = (int)row->group;
 			fprintf(out, "\n# ---- %s ----\n", titles[group]);

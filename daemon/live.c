@@ -300,7 +300,7 @@ static int set_one(struct wish *wish, char *text, struct error *error)
 		wish->is_asked[row - option_table()] = true;
 		return setting_check(row, &wish->asked, error);
 	}
-	if (!row || row->type == OPTION_TEXT || row->type == OPTION_CHOICE)
+	if (!row || row->type == OPTION_TEXT || row->choices)
 		return error_set(error, -EINVAL, "%.400s", inner.text);
 	settings_describe_values(row, values, sizeof(values));
 	return error_set(error, -EINVAL, "%.300s; it may be %s", inner.text, values);

@@ -26,6 +26,8 @@ size_t option_value_size(const struct option_row *row)
 {
 	switch (row->type) {
 	case OPTION_TEXT:
+	case OPTION_NAME:
+	case OPTION_NAMES:
 		return row->size;
 	case OPTION_FLAG:
 		return sizeof(bool);
@@ -96,18 +98,34 @@ static int parse_real(const struct option_row *row, const char *text, double *va
 	return 0;
 }
 
+void option_choices_join(const char *const *choices, char *text, size_t size)
+{
+	size_t used = 0;
+	text[0] = 0;
+	for (size_t i = 0; choices[i] && used < size; i++)
+		used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", choices[i]);
+}
+
+bool option_choices_have(const char *const *choices, const char *text, uint32_t *index)
+{
+	uint32_t i = 0;
+	while (choices[i] && strcmp(choices[i], text) != 0)
+		i++;
+	if (choices[i] && index)
+		*index = i;
+	return choices[i] != NULL;
+}
+
+static int refuse_choice(const struct option_row *row, const char *text, struct error *error)
+{
+	char list[160];
+	option_choices_join(row->choices, list, sizeof(list));
+	return error_set(error, -EINVAL, "%s: \"%.64s\" is none of %s", row->name, text, list);
+}
+
 static int parse_choice(const struct option_row *row, const char *text, uint32_t *value, struct error *error)
 {
-	char list[128] = "";
-	for (uint32_t i = 0; row->choices[i]; i++) {
-		const size_t used = strlen(list);
-		if (strcmp(text, row->choices[i]) == 0) {
-			*value = i;
-			return 0;
-		}
-		snprintf(list + used, sizeof(list) - used, "%s%s", i ? ", " : "", row->choices[i]);
-	}
-	return error_set(error, -EINVAL, "%s: \"%.64s\" is none of %s", row->name, text, list);
+	return option_choices_have(row->choices, text, value) ? 0 : refuse_choice(row, text, error);
 }
 
 /* Digits with an optional fraction, exactly: 119.88 is 11988 / 100. */
@@ -178,43 +196,68 @@ static int parse_size(const struct option_row *row, const char *text, uint32_t v
 	return 0;
 }
 
-/* "auto", "egl", "egl-device:INDEX", "osmesa", "cpu" */
 int option_value_context(const char *text, enum engine_context_kind *kind, uint32_t *device, struct error *error)
 {
-	static const char *const names[] = {"auto", "egl", "egl-device:", "osmesa", "cpu"};
-	const size_t prefix = strlen(names[ENGINE_CONTEXT_EGL_DEVICE]);
+	const struct option_row *row = option_find("context");
+	const char *indexed = row->choices[ENGINE_CONTEXT_EGL_DEVICE];
+	const size_t prefix = strcspn(indexed, ":") + 1;
+	uint32_t index = 0;
 	*device = 0;
-	if (strncmp(text, names[ENGINE_CONTEXT_EGL_DEVICE], prefix) == 0) {
+	if (strncmp(text, indexed, prefix) == 0 && strcmp(text, indexed) != 0) {
 		char *end;
-		const unsigned long index = strtoul(text + prefix, &end, 10);
-		if (!isdigit((unsigned char)text[prefix]) || *end || index > 255)
+		const unsigned long number = strtoul(text + prefix, &end, 10);
+		if (!isdigit((unsigned char)text[prefix]) || *end || number > 255)
 			return error_set(error, -EINVAL, "context: \"%.64s\": the index of the device must be 0 to 255", text);
 		*kind = ENGINE_CONTEXT_EGL_DEVICE;
-		*device = (uint32_t)index;
+		*device = (uint32_t)number;
 		return 0;
 	}
-	for (unsigned i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
-		if (i != ENGINE_CONTEXT_EGL_DEVICE && strcmp(text, names[i]) == 0) {
-			*kind = (enum engine_context_kind)i;
-			return 0;
-		}
+	if (!option_choices_have(row->choices, text, &index) || index == ENGINE_CONTEXT_EGL_DEVICE)
+		return refuse_choice(row, text, error);
+	*kind = (enum engine_context_kind)index;
+	return 0;
+}
+
+/* "kms,headless": each of them is a choice. */
+static int check_names(const struct option_row *row, const char *text, struct error *error)
+{
+	bool any = false;
+	for (text += strspn(text, ", "); *text; text += strspn(text, ", ")) {
+		char name[65];
+		const size_t length = strcspn(text, ", ");
+		snprintf(name, sizeof(name), "%.*s", (int)(length < 64 ? length : 64), text);
+		if (!option_choices_have(row->choices, name, NULL))
+			return refuse_choice(row, name, error);
+		text += length;
+		any = true;
 	}
-	return error_set(error, -EINVAL, "context: \"%.64s\" is none of auto, egl, egl-device:INDEX, osmesa, cpu", text);
+	return any ? 0 : refuse_choice(row, "", error);
+}
+
+/* Of what is text, but not any. */
+static int check_words(const struct option_row *row, const char *text, struct error *error)
+{
+	enum engine_context_kind kind;
+	uint32_t device;
+	if (row->offset == FIELD(context))
+		return option_value_context(text, &kind, &device, error);
+	if (row->type == OPTION_NAMES)
+		return check_names(row, text, error);
+	if (row->type == OPTION_NAME && !option_choices_have(row->choices, text, NULL))
+		return refuse_choice(row, text, error);
+	return 0;
 }
 
 static int parse_text(struct settings *settings, const struct option_row *row, const char *text, struct error *error)
 {
-	enum engine_context_kind kind;
-	uint32_t device;
 	if (strlen(text) >= row->size)
 		return error_set(error, -EINVAL, "%s: \"%.32s...\" is longer than %zu bytes", row->name, text, row->size - 1);
 	for (const char *c = text; *c; c++)
 		if (iscntrl((unsigned char)*c))
 			return error_set(error, -EINVAL, "%s: holds a control character (%d)", row->name, *c);
-	if (row->offset == FIELD(context) && option_value_context(text, &kind, &device, error) < 0)
-		return -EINVAL;
-	if ((row->offset == FIELD(method) || row->offset == FIELD(present)) && !*text)
-		return error_set(error, -EINVAL, "%s: is empty", row->name);
+	const int result = check_words(row, text, error);
+	if (result < 0)
+		return result;
 	memset(field_of(settings, row), 0, row->size);
 	memcpy(field_of(settings, row), text, strlen(text));
 	return 0;
@@ -224,6 +267,8 @@ int option_value_set(struct settings *settings, const struct option_row *row, co
 {
 	switch (row->type) {
 	case OPTION_TEXT:
+	case OPTION_NAME:
+	case OPTION_NAMES:
 		return parse_text(settings, row, value, error);
 	case OPTION_FLAG:
 		return parse_flag(row, value, field_of(settings, row), error);
@@ -279,6 +324,8 @@ void option_value_print(const struct settings *settings, const struct option_row
 	const void *field = const_field_of(settings, row);
 	switch (row->type) {
 	case OPTION_TEXT:
+	case OPTION_NAME:
+	case OPTION_NAMES:
 		snprintf(value, size, "%s", (const char *)field);
 		break;
 	case OPTION_FLAG:

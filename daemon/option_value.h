@@ -16,7 +16,7 @@ size_t option_value_size(const struct option_row *row);
 /* Writes the present value as option_value_set() would take it. Truncates. */
 void option_value_print(const struct settings *settings, const struct option_row *row, char *value, size_t size);
 
-/* "auto", "egl", "egl-device:INDEX", "osmesa", "cpu". 0 or -EINVAL with a sentence. */
+/* A choice of the setting context, with a number where it says INDEX. 0 or -EINVAL with a sentence. */
 int option_value_context(const char *text, enum engine_context_kind *kind, uint32_t *device, struct error *error);
 
 #endif

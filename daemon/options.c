@@ -11,6 +11,12 @@
 
 #define HELP_COLUMNS 120
 
+/* A test holds these two to what engine_methods() and presenter_impls() have. */
+static const char *const method_choices[] = {"hold",    "black", "blur-hold",     "mcif",    "interpolate",
+											 "scatter", "grid",  "adaptive-grid", "pursuit", NULL};
+static const char *const present_choices[] = {"headless", "glfw", "kms", NULL};
+/* In the order of enum engine_context_kind. */
+static const char *const context_choices[] = {"auto", "egl", "egl-device:INDEX", "osmesa", "cpu", NULL};
 static const char *const analysis_choices[] = {"auto", "cpu", "gpu", NULL};
 static const char *const motion_model_choices[] = {"linear", "quadratic", NULL};
 static const char *const blur_choices[] = {"doubtful", "everywhere", "off", NULL};
@@ -29,6 +35,10 @@ static const char *const log_choices[] = {"error", "warning", "info", "debug", N
 #define TEXT(field, option, group, value, help)                                                                      \
 	{                                                                                                                \
 		option, group, OPTION_TEXT, FIELD(field), sizeof(((struct settings *)0)->field), value, 0, 0, "", NULL, help \
+	}
+#define WORDS(field, option, group, type, value, choices, help)                                                  \
+	{                                                                                                            \
+		option, group, type, FIELD(field), sizeof(((struct settings *)0)->field), value, 0, 0, "", choices, help \
 	}
 #define FLAG(field, option, group, value, help)                                  \
 	{                                                                            \
@@ -57,10 +67,9 @@ static const char *const log_choices[] = {"error", "warning", "info", "debug", N
 	}
 
 static const struct option_row rows[] = {
-	TEXT(method, "method", OPTION_ENGINE, "pursuit",
-		 "How displayed frames are made from real ones. An unknown name is answered with the list."),
-	TEXT(context, "context", OPTION_ENGINE, "auto",
-		 "Where the engine runs: auto, egl, egl-device:INDEX, osmesa or cpu."),
+	WORDS(method, "method", OPTION_ENGINE, OPTION_NAME, "pursuit", method_choices,
+		  "How displayed frames are made from real ones."),
+	WORDS(context, "context", OPTION_ENGINE, OPTION_NAME, "auto", context_choices, "Where the engine runs."),
 	FLAG(gles, "gles", OPTION_ENGINE, "no", "Use OpenGL ES 3.1 instead of OpenGL 4.3 core."),
 	NUMBER(threads, "threads", OPTION_ENGINE, "0", 0, 8, "",
 		   "Threads that the engine works with on the CPU, besides those of GL; 0: one for each processor that it may "
@@ -91,9 +100,8 @@ static const struct option_row rows[] = {
 		   "of them. With the governor the level that it never goes below, else fixed."),
 	CHOICE(governor, "governor", OPTION_OUTPUT, "auto", governor_choices,
 		   "Raise the level when the work for a real frame does not fit into its vblanks, and lower it again."),
-	TEXT(present, "present", OPTION_OUTPUT, "headless",
-		 "Presenters, separated by commas; the first one that works is used: headless, glfw, kms. When a display is "
-		 "lost, the list is tried again."),
+	WORDS(present, "present", OPTION_OUTPUT, OPTION_NAMES, "headless", present_choices,
+		  "Presenters; the first one that works is used. When a display is lost, the list is tried again."),
 	RATE(refresh, "refresh", OPTION_OUTPUT, "120", 1, 1000,
 		 "Display rate as 120, 119.88 or 120000/1001; a presenter with a display of its own may have another."),
 	NUMBER(spin_us, "spin-us", OPTION_OUTPUT, "0", 0, 500, "us",
@@ -366,18 +374,21 @@ int settings_argument(struct settings *settings, unsigned group_mask, int argc, 
 
 void settings_describe_values(const struct option_row *row, char *text, size_t size)
 {
-	size_t used = 0;
+	char list[128];
 	switch (row->type) {
 	case OPTION_TEXT:
 		snprintf(text, size, "text");
+		return;
+	case OPTION_NAMES:
+		option_choices_join(row->choices, list, sizeof(list));
+		snprintf(text, size, "of %s, separated by commas", list);
 		return;
 	case OPTION_FLAG:
 		snprintf(text, size, "yes or no");
 		return;
 	case OPTION_CHOICE:
-		text[0] = 0;
-		for (size_t i = 0; row->choices[i] && used < size; i++)
-			used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", row->choices[i]);
+	case OPTION_NAME:
+		option_choices_join(row->choices, text, size);
 		return;
 	case OPTION_SIZE:
 		snprintf(text, size, "auto, or %g to %g px each", row->min, row->max);
@@ -416,18 +427,19 @@ static void print_wrapped(const char *text, int indent, FILE *out)
 }
 
 /* What a value is called, by type. */
-static const char *const value_names[] = {"TEXT", "", "NUMBER", "NUMBER", "NAME", "RATE", "WxH"};
+static const char *const value_names[] = {"TEXT", "", "NUMBER", "NUMBER", "NAME", "NAME", "LIST", "RATE", "WxH"};
 
 void settings_print_options(unsigned group_mask, FILE *out)
 {
 	for (const struct option_row *row = rows; row->name; row++) {
-		char range[128];
+		char range[160];
 		if (!(group_mask & (1u << row->group)))
 			continue;
 		settings_describe_values(row, range, sizeof(range));
 		fprintf(out, "option\t%s%s\t%s\t", row->type == OPTION_FLAG ? "[no-]" : "", row->name, value_names[row->type]);
-		for (size_t i = 0; row->type == OPTION_CHOICE && row->choices[i]; i++)
-			fprintf(out, "%s%s", i ? "," : "", row->choices[i]);
+		for (size_t i = 0; row->choices && row->choices[i]; i++)
+			if (!strchr(row->choices[i], ':')) /* of those, only what may be written as it stands */
+				fprintf(out, "%s%s", i ? "," : "", row->choices[i]);
 		fprintf(out, "\t%s\t%s\t%s\n", row->help, range, *row->default_value ? row->default_value : "empty");
 	}
 }
@@ -435,7 +447,7 @@ void settings_print_options(unsigned group_mask, FILE *out)
 void settings_print_help(unsigned group_mask, FILE *out)
 {
 	for (const struct option_row *row = rows; row->name; row++) {
-		char range[128], usage[64];
+		char range[160], values[256], usage[64];
 		if (!(group_mask & (1u << row->group)))
 			continue;
 		settings_describe_values(row, range, sizeof(range));
@@ -445,7 +457,9 @@ void settings_print_help(unsigned group_mask, FILE *out)
 			snprintf(usage, sizeof(usage), "--%s %s", row->name, value_names[row->type]);
 		fprintf(out, "  %-30s ", usage);
 		print_wrapped(row->help, 33, out);
-		fprintf(out, "  %-30s (%s; default %s)\n", "", range, *row->default_value ? row->default_value : "empty");
+		snprintf(values, sizeof(values), "(%s; default %s)", range, *row->default_value ? row->default_value : "empty");
+		fprintf(out, "  %-30s ", "");
+		print_wrapped(values, 33, out);
 	}
 }
 

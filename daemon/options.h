@@ -79,6 +79,8 @@ enum option_type {
 	OPTION_NUMBER, /* uint32_t within min, max */
 	OPTION_REAL,   /* double within min, max */
 	OPTION_CHOICE, /* uint32_t index into choices */
+	OPTION_NAME,   /* text, one of choices */
+	OPTION_NAMES,  /* text, some of choices in any order, separated by commas */
 	OPTION_RATE,   /* two uint64_t: "120", "119.88", "120000/1001" */
 	OPTION_SIZE,   /* two uint32_t within min, max: "1280x720"; "auto" is 0x0 */
 };
@@ -137,6 +139,12 @@ bool settings_agree(const struct settings *a, const struct settings *b, const st
 
 /* Takes this one over as it is. */
 void settings_copy(struct settings *to, const struct settings *from, const struct option_row *row);
+
+/* "a, b, c": a list of choices for a person. Truncates. */
+void option_choices_join(const char *const *choices, char *text, size_t size);
+
+/* Is it one of them, and which? `index` may be NULL. */
+bool option_choices_have(const char *const *choices, const char *text, uint32_t *index);
 
 /* What may be written, for a person: "yes or no", "4 to 64 px". Truncates. */
 void settings_describe_values(const struct option_row *row, char *text, size_t size);

@@ -35,14 +35,12 @@ int args_failed(const char *verb, const char *format, ...)
 
 int args_check_method(const char *verb, const char *option, const char *method)
 {
-	char names[200] = "";
-	for (const struct engine_method_info *info = engine_methods(); info->name; info++) {
-		size_t used = strlen(names);
-		if (strcmp(info->name, method) == 0)
-			return STATUS_DONE;
-		snprintf(names + used, sizeof(names) - used, "%s%s", used ? ", " : "", info->name);
-	}
-	return args_wrong(verb, "%s is %s, must be one of %s", option, method, names);
+	const char *const *names = option_find("method")->choices;
+	char list[200];
+	option_choices_join(names, list, sizeof(list));
+	return option_choices_have(names, method, NULL)
+			   ? STATUS_DONE
+			   : args_wrong(verb, "%s is %s, must be one of %s", option, method, list);
 }
 
 unsigned args_distance(const char *a, const char *b)
@@ -120,27 +118,6 @@ static bool read_size(const char *text, struct arg_size *size)
 	return true;
 }
 
-static bool read_choice(const struct arg_row *row, const char *text, uint32_t *chosen)
-{
-	for (uint32_t i = 0; row->choices[i]; i++) {
-		if (strcmp(row->choices[i], text) == 0) {
-			*chosen = i;
-			return true;
-		}
-	}
-	return false;
-}
-
-static void describe_choices(const struct arg_row *row, char *text, size_t size)
-{
-	size_t used = 0;
-	text[0] = '\0';
-	for (uint32_t i = 0; row->choices[i] && used < size; i++) {
-		int wrote = snprintf(text + used, size - used, "%s%s", i ? ", " : "", row->choices[i]);
-		used += (size_t)(wrote > 0 ? wrote : 0);
-	}
-}
-
 /* Fills the row's target; false with a sentence of what would be right. */
 static bool set_row(const struct arg_row *row, const char *text, struct error *error)
 {
@@ -174,9 +151,9 @@ static bool set_row(const struct arg_row *row, const char *text, struct error *e
 		error_set(error, -EINVAL, "a rate from 1 to 1000 Hz such as 60, 59.94 or 60000/1001");
 		return args_read_rate(text, row->target);
 	case ARG_CHOICE:
-		describe_choices(row, choices, sizeof(choices));
+		option_choices_join(row->choices, choices, sizeof(choices));
 		error_set(error, -EINVAL, "one of %s", choices);
-		return read_choice(row, text, row->target);
+		return option_choices_have(row->choices, text, row->target);
 	}
 	return false;
 }
@@ -276,7 +253,7 @@ static void print_options(const struct args *args)
 	for (const struct arg_row *row = args->rows; row && row->name; row++) {
 		const char *value = row->type == ARG_FLAG ? "" : row->value ? row->value : "VALUE";
 		printf("option\t%s\t%s\t", row->name, value);
-		for (size_t i = 0; row->type == ARG_CHOICE && row->choices[i]; i++)
+		for (size_t i = 0; row->choices && row->choices[i]; i++)
 			printf("%s%s", i ? "," : "", row->choices[i]);
 		printf("\t%s\t\t\n", row->help);
 	}

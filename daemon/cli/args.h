@@ -43,7 +43,7 @@ struct arg_row {
 	enum arg_type type;
 	void *target;
 	double min, max;
-	const char *const *choices; /* NULL-terminated */
+	const char *const *choices; /* NULL-terminated; of ARG_TEXT: words that completions offer */
 	const char *value;          /* what help calls the value */
 	const char *help;
 };

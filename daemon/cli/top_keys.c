@@ -46,15 +46,6 @@ void top_keys_describe(char *text, size_t size)
 
 /* ---- the next value ---- */
 
-static const char *next_method(const char *now)
-{
-	const struct engine_method_info *methods = engine_methods();
-	size_t i = 0;
-	while (methods[i].name && strcmp(methods[i].name, now) != 0)
-		i++;
-	return methods[i].name && methods[i + 1].name ? methods[i + 1].name : methods[0].name;
-}
-
 static const char *next_choice(const char *const *choices, const char *now)
 {
 	size_t i = 0;
@@ -65,15 +56,13 @@ static const char *next_choice(const char *const *choices, const char *now)
 
 static void next_value(const struct option_row *row, const char *now, char *next, size_t size)
 {
-	if (row->type == OPTION_CHOICE)
+	if (row->choices)
 		snprintf(next, size, "%s", next_choice(row->choices, now));
 	else if (row->type == OPTION_FLAG)
 		snprintf(next, size, "%s", strcmp(now, "yes") == 0 ? "no" : "yes");
-	else if (row->type == OPTION_NUMBER)
+	else
 		snprintf(next, size, "%ld",
 				 strtol(now, NULL, 10) < (long)row->max ? strtol(now, NULL, 10) + 1 : (long)row->min);
-	else
-		snprintf(next, size, "%s", next_method(now));
 }
 
 /* ---- requests ---- */

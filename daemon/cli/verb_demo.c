@@ -71,7 +71,7 @@ static bool read_options(struct demo_options *options, int argc, char **argv, in
 		{"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F",
 		 "frames that the client renders a second; 40 on a CPU, 60 on a GPU"},
 		{"out", ARG_TEXT, &options->out, 0, 0, NULL, "DIR", "where report, time line and contact sheet go (out-demo)"},
-		{"methods", ARG_TEXT, &options->methods, 0, 0, NULL, "LIST",
+		{"methods", ARG_TEXT, &options->methods, 0, 0, option_find("method")->choices, "LIST",
 		 "methods to show in turn, divided by commas, for the task of the scene rings"},
 		{"method-seconds", ARG_REAL, &options->method_seconds, 0.5, 86400, NULL, "S", "how long each of them (60)"},
 		{"json", ARG_FLAG, &options->json, 0, 0, NULL, NULL, "print report.json on stdout instead of the summary"},

@@ -75,7 +75,7 @@ static void print_long(json_t *settings, json_t *origins)
 		const struct option_row *row = option_find(name);
 		json_t *origin = json_object_get(origins, name);
 		const char *live = json_string_value(json_object_get(origin, "live"));
-		char range[128] = "?";
+		char range[160] = "?";
 		if (row)
 			settings_describe_values(row, range, sizeof(range));
 		printf("# from: ");

@@ -147,7 +147,7 @@ static int check_setting(const char *name, const char *value)
 		return args_wrong(VERB, "%s is no setting of the picture, which alone an application may have", name);
 	if (settings_set(&settings, name, value, &error) == 0 && setting_check(row, &settings, &error) == 0)
 		return STATUS_DONE;
-	if (!row || row->type == OPTION_TEXT || row->type == OPTION_CHOICE)
+	if (!row || row->type == OPTION_TEXT || row->choices)
 		return args_wrong(VERB, "%s", error.text);
 	settings_describe_values(row, values, sizeof(values));
 	return args_wrong(VERB, "%s; it may be %s", error.text, values);

@@ -99,6 +99,10 @@ class Pages(common.Case):
         self.assertNotIn("demo", self.complete("pursuit", "re"))
         self.assertEqual(self.complete("pursuit", "replay", "--pre"), ["--predict"])
         self.assertEqual(self.complete("pursuit", "replay", "--blur", ""), ["doubtful", "everywhere", "off"])
+        self.assertEqual(self.complete("pursuit", "replay", "--method", "adap"), ["adaptive-grid"])
+        self.assertEqual(self.complete("pursuit", "report", "--methods", "mc"), ["mcif"])
+        self.assertEqual(self.complete("pursuitd", "--present", ""), ["headless", "glfw", "kms"])
+        self.assertEqual(self.complete("pursuit", "set", "context", "=", ""), ["auto", "egl", "osmesa", "cpu"])
         self.assertIn("--no-compensation", self.complete("pursuit", "replay", "--no"))
         self.assertIn("debug", self.complete("pursuitd", "--log-level", "de"))
 

@@ -86,7 +86,7 @@ class Profile(common.Case):
             (["set", "race", "cell=3"], 2, "cell: 3 is below 4 px; it may be 4 to 64 px"),
             (["set", "race", "cel=8"], 2, "cel: there is no such setting; did you mean cell?"),
             (["set", "race", "max-clients=3"], 2, "max-clients is no setting of the picture"),
-            (["set", "race", "method=magic"], 2, "there is no method \"magic\"; there are hold"),
+            (["set", "race", "method=magic"], 2, "method: \"magic\" is none of hold, black"),
             (["set", "race", "cell"], 2, "cell is not of the form NAME=VALUE"),
             (["set", "race"], 2, "it is: pursuit profile set APPLICATION NAME=VALUE..."),
             (["set", "", "cell=8"], 2, "application: has no name"),

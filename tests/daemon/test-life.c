@@ -37,8 +37,8 @@ static void test_usage(void)
 		const char *a, *b, *sentence;
 	} wrong[] = {
 		{"--methd", "x", "--methd: there is no such option; did you mean --method?"},
-		{"--method", "magic", "method: there is no method \"magic\"; there are "},
-		{"--present", "hologram", "present: there is no presenter \"hologram\""},
+		{"--method", "magic", "method: \"magic\" is none of hold, "},
+		{"--present", "hologram", "present: \"hologram\" is none of headless, glfw, kms"},
 		{"--refresh", "5000", "refresh: 5000 is above 1000 Hz"},
 		{"--cell", NULL, "--cell needs a value"},
 		{"stray", NULL, "stray: there is no such option"},

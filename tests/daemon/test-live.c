@@ -112,7 +112,7 @@ static void test_refusals(void)
 		{"set cell=x", "cell: \"x\" is not a whole number; it may be 4 to 64 px"},
 		{"set compensation=perhaps", "it may be yes or no"},
 		{"set blur=much", "blur: \"much\" is none of doubtful, everywhere, off"},
-		{"set method=magic", "there is no method \"magic\"; there are hold, "},
+		{"set method=magic", "method: \"magic\" is none of hold, black"},
 		{"set gama=2", "gama: there is no such setting; did you mean gamma?"},
 		{"set refresh=0", "refresh: 0 is below 1 Hz; it may be 1 to 1000 Hz"},
 		{"set context=magic", "context: \"magic\" is none of auto, egl"},

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "daemon/configuration.h"
+#include "daemon/present/presenter.h"
 #include "tests/test.h"
 
 static void test_table(void)
@@ -44,7 +45,7 @@ static void test_long_texts(void)
 		struct settings settings, other;
 		struct error error = {""};
 		CHECK(row->size <= OPTION_VALUE_BYTES);
-		if (row->type != OPTION_TEXT || strcmp(row->name, "context") == 0)
+		if (row->type != OPTION_TEXT)
 			continue;
 		settings_defaults(&settings);
 		memset(text, 'x', row->size - 1);
@@ -96,6 +97,8 @@ static void expect(const char *name, const char *value, int result, const char *
 	CHECK_STRING(error.text, sentence);
 }
 
+#define METHODS "hold, black, blur-hold, mcif, interpolate, scatter, grid, adaptive-grid, pursuit"
+
 static void test_refusals(void)
 {
 	expect("cell", "3", -EINVAL, "cell: 3 is below 4 px");
@@ -115,7 +118,13 @@ static void test_refusals(void)
 	expect("refresh", "12a", -EINVAL, "refresh: \"12a\" is not a rate like 120, 119.88 or 120000/1001");
 	expect("context", "glx", -EINVAL, "context: \"glx\" is none of auto, egl, egl-device:INDEX, osmesa, cpu");
 	expect("context", "egl-device:x", -EINVAL, "context: \"egl-device:x\": the index of the device must be 0 to 255");
-	expect("method", "", -EINVAL, "method: is empty");
+	expect("context", "egl-device:INDEX", -EINVAL,
+		   "context: \"egl-device:INDEX\" is none of auto, egl, egl-device:INDEX, osmesa, cpu");
+	expect("method", "", -EINVAL, "method: \"\" is none of " METHODS);
+	expect("method", "grid,hold", -EINVAL, "method: \"grid,hold\" is none of " METHODS);
+	expect("present", "kms, headless", 0, "");
+	expect("present", "", -EINVAL, "present: \"\" is none of headless, glfw, kms");
+	expect("present", "kms,hologram", -EINVAL, "present: \"hologram\" is none of headless, glfw, kms");
 	expect("window-size", "auto", 0, "");
 	expect("window-size", "16x16384", 0, "");
 	expect("window-size", "15x100", -EINVAL, "window-size: 15x100 is not within 16 to 16384 px");
@@ -392,6 +401,22 @@ static void test_engine_params(void)
 	CHECK_INT(params.curve, ENGINE_CURVE_GAMMA);
 }
 
+/* What the table offers is what there is. */
+static void test_choices(void)
+{
+	const char *const *names = option_find("method")->choices;
+	size_t count = 0;
+	for (const struct engine_method_info *info = engine_methods(); info->name; info++, count++)
+		CHECK_STRING(names[count], info->name);
+	CHECK(!names[count]);
+	names = option_find("present")->choices;
+	count = 0;
+	for (const struct presenter_impl *const *impl = presenter_impls(); *impl; impl++, count++)
+		CHECK(option_choices_have(names, (*impl)->name, NULL));
+	CHECK(names[count - 1] && !names[count]);
+	CHECK_STRING(option_find("context")->choices[ENGINE_CONTEXT_CPU], "cpu");
+}
+
 static void test_help(void)
 {
 	char *text = NULL;
@@ -419,6 +444,7 @@ int main(void)
 	RUN(test_print_options);
 	RUN(test_arguments);
 	RUN(test_engine_params);
+	RUN(test_choices);
 	RUN(test_help);
 	return test_result();
 }

@@ -288,7 +288,7 @@ static void test_bad_sections(void)
 		 ":4: application a has a section already, at line 1"},
 		{"[application a]\nmax-clients = 3\n", ":2: max-clients is no setting of the picture"},
 		{"[application a]\ncell = 3\n", ":2: cell: 3 is below 4 px"},
-		{"[application a]\nmethod = magic\n", ":2: method: there is no method \"magic\"; there are hold"},
+		{"[application a]\nmethod = magic\n", ":2: method: \"magic\" is none of hold, black"},
 		{"\n[program a]\n", ":2: \"[program a]\" is not of the form [application NAME]"},
 		{"[application a\n", ":1: \"[application a\" is not of the form [application NAME]"},
 		{"[application]\n", ":1: \"[application]\" is not of the form"},
