@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
 #include <unistd.h>
@@ -63,6 +64,10 @@ bool shim_attach_init(struct shim_attach *attach, const char *socket_path, const
 
 void shim_attach_finish(struct shim_attach *attach)
 {
+	/* A child that was forked may keep the connection open. */
+	if (attach->socket >= 0 && attach->process == getpid()) {
+		shutdown(attach->socket, SHUT_RDWR);
+	}
 	shim_close_fd(&attach->socket);
 	shim_close_fd(&attach->wake);
 	shim_slots_destroy(&attach->offered);
@@ -154,6 +159,7 @@ static void try_to_connect(struct shim_attach *attach, const struct shim_layout 
 		return;
 	}
 	attach->socket = result;
+	attach->process = getpid();
 	result = offer_slots(attach, layout);
 	if (result < 0) {
 		leave_for_now(attach, now_ns, "cannot offer a stream to the daemon at", path, -result);
@@ -354,6 +360,10 @@ enum shim_attach_change shim_attach_step(struct shim_attach *attach, const struc
 			try_to_connect(attach, layout, now_ns);
 		}
 		return SHIM_ATTACH_SAME;
+	}
+	if (attach->process != getpid()) {
+		leave(attach, PURSUIT_STATE_DETACHED, now_ns, 0, "this process was forked from the one that was attached");
+		return was_attached ? SHIM_ATTACH_LOST : SHIM_ATTACH_SAME;
 	}
 	enum shim_attach_change change = read_packets(attach, now_ns);
 	if (attach->state == PURSUIT_STATE_ATTACHING && now_ns >= attach->give_up_ns) {

@@ -24,6 +24,7 @@
 
 #include <stdbool.h>
 #include <stdint.h>
+#include <sys/types.h>
 
 #include "client/layout.h"
 #include "client/packet.h"
@@ -36,6 +37,7 @@
 struct shim_attach {
 	enum pursuit_state state;
 	int socket;                 /* -1: none */
+	pid_t process;              /* that connected: a child of fork() has a copy of the socket, and no part in it */
 	int wake;                   /* the daemon's eventfd, only when attached; -1: none */
 	bool greeted;               /* WELCOME has come */
 	bool complained;            /* a REFUSED has come that did not end the connection */

@@ -27,6 +27,9 @@
  *   }
  *   pursuit_close(&stream);
  *
+ * fork(): the stream stays the parent's, and so do frames that are acquired. A
+ * child that uses or closes its copy does the parent no harm: it attaches anew.
+ *
  * Threads: a stream belongs to one thread at a time, of the caller's choice;
  * different streams are independent. The library starts no thread, installs no
  * signal handler, never changes the GL state that the caller can see, and

@@ -33,6 +33,7 @@ struct client *client_create(const struct server_params *params, struct packet *
 	client->params = params;
 	client->packet = packet;
 	client->fd = fd;
+	client->process = -1;
 	client->id = id;
 	client->connected_ns = clock_now(params->clock);
 	snprintf(client->name, sizeof(client->name), "process %d", (int)client->peer.pid);
@@ -58,6 +59,9 @@ void client_destroy(struct client **client)
 	for (uint32_t i = 0; i < PURSUIT_MAX_STREAMS_PER_CLIENT; i++)
 		end_stream(&self->streams[i]);
 	loop_remove(&self->source);
+	loop_remove(&self->process_source);
+	if (self->process >= 0)
+		close(self->process);
 	packet_drain(self->fd);
 	close(self->fd);
 	free(self);

@@ -33,6 +33,8 @@ struct client {
 	uint64_t id;
 	int fd;
 	struct loop_source *source;
+	int process; /* that connected, as a pidfd; -1: not watched */
+	struct loop_source *process_source;
 	bool greeted;
 	bool gone; /* to be removed by the server */
 	struct peer peer;

@@ -8,25 +8,12 @@
 #include <poll.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
-/* Linux 6.5; headers that are older do not name it. */
-#define PEER_PIDFD 77
+#include "daemon/peer.h"
 
 static const char deleted[] = " (deleted)";
-
-/* The process that connected, even if its number is another's by now; before Linux 6.5 the one that has it now. */
-static int open_process(int socket, pid_t pid)
-{
-	int process = -1;
-	socklen_t size = sizeof(process);
-	if (getsockopt(socket, SOL_SOCKET, PEER_PIDFD, &process, &size) == 0)
-		return process;
-	return (int)syscall(SYS_pidfd_open, pid, 0);
-}
 
 static bool is_alive(int process)
 {
@@ -62,7 +49,7 @@ static bool read_name(pid_t pid, char name[EXECUTABLE_NAME_BYTES])
 
 bool executable_of(int socket, pid_t pid, char name[EXECUTABLE_NAME_BYTES])
 {
-	const int process = pid > 0 ? open_process(socket, pid) : -1;
+	const int process = peer_open_process(socket, pid);
 	*name = 0;
 	if (process < 0)
 		return false;

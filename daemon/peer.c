@@ -10,8 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
+/* Linux 6.5; headers that are older do not name it. */
+#define PEER_PIDFD 77
 /* As many as Linux lets a process have. */
 #define MOST_GROUPS 65536u
 #define NAME_BYTES 64
@@ -23,6 +26,18 @@ struct peer peer_of(int socket)
 	if (getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &credentials, &size) < 0)
 		return (struct peer){0, (uid_t)-1, (gid_t)-1};
 	return (struct peer){credentials.pid, credentials.uid, credentials.gid};
+}
+
+int peer_open_process(int socket, pid_t pid)
+{
+	int process = -1;
+	socklen_t size = sizeof(process);
+	if (pid <= 0)
+		return -1;
+	if (getsockopt(socket, SOL_SOCKET, PEER_PIDFD, &process, &size) == 0)
+		return process;
+	/* Before Linux 6.5 the one that has the number now. */
+	return (int)syscall(SYS_pidfd_open, pid, 0);
 }
 
 /* ---- lists ---- */

@@ -23,6 +23,12 @@ struct peer {
 /* What the kernel says of the other end of a connection. */
 struct peer peer_of(int socket);
 
+/*
+ * The process that connected `socket`, with this number, as a pidfd, which is readable once it has ended; the caller's.
+ * -1: it has ended, or may not be known.
+ */
+int peer_open_process(int socket, pid_t pid);
+
 /* Are all names known? 0 or -EINVAL with a sentence that names the setting (`option`). */
 int peer_check_users(const char *option, const char *users, struct error *error);
 int peer_check_groups(const char *option, const char *groups, struct error *error);

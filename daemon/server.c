@@ -72,6 +72,22 @@ static void on_client(void *data, uint32_t events)
 	remove_gone(server);
 }
 
+/* Its children may keep the connection open; what it has sent still counts. */
+static void on_process_ended(void *data, uint32_t events)
+{
+	struct client *client = data;
+	(void)events;
+	on_client(client, EPOLLHUP);
+}
+
+/* Without it the end of the connection is the end of the client. */
+static void watch_process(struct client *client)
+{
+	client->process = peer_open_process(client->fd, client->peer.pid);
+	if (client->process >= 0)
+		client->process_source = loop_add(client->params->loop, client->process, EPOLLIN, on_process_ended, client);
+}
+
 /* Room for one more, if need be by dropping one that never spoke. */
 static bool make_room(struct server *server)
 {
@@ -133,6 +149,7 @@ static void add_client(struct server *server, int fd)
 		client_destroy(&client);
 		return;
 	}
+	watch_process(client);
 	client->next = server->clients;
 	server->clients = client;
 	server->client_count++;

@@ -4,6 +4,7 @@
 /* The stream with no daemon, a good one, and one that is killed and comes back. */
 
 #include <errno.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -352,6 +353,82 @@ static void test_killed_and_back(void)
 }
 
 /* Where a stream looks when it is not told: the first of two places, then the second. */
+static void hear(int pipe)
+{
+	char byte;
+	CHECK(read(pipe, &byte, 1) == 1);
+}
+
+/* A child that has a copy of everything and uses it; ends with 0 if all is well. */
+static int play_child(struct pursuit_stream *stream, int heard, int said)
+{
+	struct pursuit_status status = status_of(stream);
+	if (status.state != PURSUIT_STATE_ATTACHED || send_frame(stream, 9) == 0) {
+		return 1;
+	}
+	status = status_of(stream);
+	if (status.state == PURSUIT_STATE_ATTACHED || status.published != 1) {
+		return 2;
+	}
+	pursuit_update(stream);
+	if (status_of(stream).state != PURSUIT_STATE_ATTACHING) {
+		return 3;
+	}
+	pursuit_close(&stream);
+	char byte = 1;
+	return write(said, &byte, 1) == 1 && read(heard, &byte, 1) == 0 ? 0 : 4; /* lives on meanwhile */
+}
+
+/* The connection has ended, though its other end is open. */
+static bool is_hung_up(const struct fake_daemon *daemon)
+{
+	struct pollfd client = {daemon->client, POLLIN, 0};
+	return poll(&client, 1, 0) == 1 && (client.revents & POLLHUP);
+}
+
+/* fork() without exec(): the stream stays the parent's whatever the child does, and goes with the parent. */
+static void test_forked(void)
+{
+	struct fake_daemon daemon;
+	int to_child[2], to_parent[2], status = -1;
+
+	CHECK(fake_start(&daemon, harness.path, FAKE_GOOD));
+	struct pursuit_stream *stream = open_stream(4);
+	CHECK(attach(stream, &daemon));
+	CHECK_INT(send_frame(stream, 1), 1);
+	CHECK(fake_take(&daemon, NULL) != NULL);
+	const pid_t idle = fork();
+	if (idle == 0) {
+		pause();
+		_exit(0);
+	}
+	CHECK(pipe(to_child) == 0 && pipe(to_parent) == 0);
+	const pid_t child = fork();
+	if (child == 0) {
+		close(to_parent[0]);
+		close(to_child[1]);
+		_exit(play_child(stream, to_child[0], to_parent[1]));
+	}
+	close(to_child[0]);
+	close(to_parent[1]); /* a child that fails is the end of it */
+	hear(to_parent[0]);
+	CHECK(fake_take(&daemon, NULL) == NULL);
+	CHECK(!is_hung_up(&daemon));
+	CHECK_INT(send_frame(stream, 2), 2);
+	CHECK_INT(status_of(stream).state, PURSUIT_STATE_ATTACHED);
+	const struct pursuit_frame_header *header = fake_take(&daemon, NULL);
+	CHECK(header && header->frame_id == 2);
+	CHECK(close_stream(&stream));
+	CHECK(is_hung_up(&daemon));
+	close(to_child[1]);
+	CHECK(waitpid(child, &status, 0) == child && WIFEXITED(status));
+	CHECK_INT(WEXITSTATUS(status), 0);
+	kill(idle, SIGKILL);
+	waitpid(idle, NULL, 0);
+	close(to_parent[0]);
+	fake_stop(&daemon, true);
+}
+
 static void test_environment(void)
 {
 	struct pursuit_stream_params params = {.width = 16, .height = 16};
@@ -403,6 +480,7 @@ int main(void)
 	RUN(test_frame_outlives_daemon);
 	RUN(test_closed_with_frames_out);
 	RUN(test_killed_and_back);
+	RUN(test_forked);
 	RUN(test_environment);
 	harness_finish();
 	return test_result();

@@ -4,6 +4,9 @@
 /* Several clients at once: which one is shown, who is told so, whose are the keys. */
 
 #include <errno.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "client/pursuit.h"
@@ -143,12 +146,58 @@ static void test_quit_key(void)
 	pursuit_close(&stream);
 }
 
+static bool has_stream(void)
+{
+	static struct raw_reply reply;
+	const int fd = raw_greet(fixture.socket);
+	CHECK_INT(raw_control(fd, "status", -1, &reply), 0);
+	close(fd);
+	return strstr((const char *)reply.raw + sizeof(reply.control), "a parent") != NULL;
+}
+
+/* One that dies, and leaves a child that has all that it had. */
+static void test_parent_that_dies(void)
+{
+	int ends[2], child = 0;
+	CHECK_INT(pipe(ends), 0);
+	const pid_t parent = fork();
+	if (parent == 0) {
+		struct pursuit_stream *stream = open_stream("a parent", 0);
+		for (int i = 0; i < PATIENCE && !is_attached(stream); i++) {
+			submit(stream);
+			sleep_ms(25);
+		}
+		child = fork();
+		if (child == 0)
+			for (;;)
+				pause();
+		CHECK(write(ends[1], &child, sizeof(child)) == sizeof(child));
+		for (;;)
+			pause();
+	}
+	CHECK(read(ends[0], &child, sizeof(child)) == sizeof(child));
+	CHECK(has_stream());
+	kill(parent, SIGKILL);
+	waitpid(parent, NULL, 0);
+	bool has = true;
+	for (int i = 0; i < PATIENCE && has; i++) {
+		sleep_ms(25);
+		has = has_stream();
+	}
+	CHECK(!has);
+	CHECK_INT(kill(child, 0), 0);
+	kill(child, SIGKILL);
+	close(ends[0]);
+	close(ends[1]);
+}
+
 int main(int argc, char **argv)
 {
 	(void)argc;
 	fixture_init(&fixture, argv[1]);
 	fixture_start(&fixture, NULL);
 	RUN(test_focus);
+	RUN(test_parent_that_dies);
 	RUN(test_quit_key);
 	fixture_finish(&fixture);
 	return test_result();
