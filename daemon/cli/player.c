@@ -6,12 +6,16 @@
 #include <errno.h>
 #include <stdlib.h>
 
+#include "ahead.h"
 #include "daemon/clock.h"
 #include "progress.h"
 
 #define PLAN_TEXT_BYTES 4096u
 
-/* The picture rendered last. */
+/* Pictures that are made one after the other before they are looked at; few frames have more. */
+#define BATCH 4u
+
+/* Room for a picture. */
 struct canvas {
 	uint8_t *data;
 	size_t capacity;
@@ -34,20 +38,12 @@ static int canvas_fit(struct canvas *canvas, const struct engine *engine, struct
 	return 0;
 }
 
-static int canvas_render(struct canvas *canvas, struct engine *engine, const struct showing *showing,
-						 struct error *error)
-{
-	const struct engine_request request = {showing->show, showing->phase};
-	struct engine_image image = {canvas->data, canvas->picture.stride};
-	return engine_render(engine, &request, &image, error);
-}
-
 static double now_ms(void)
 {
 	return (double)clock_monotonic_ns() / 1e6;
 }
 
-static int show_picture(struct player *player, struct canvas *canvas, const struct beginning *beginning,
+static int show_picture(struct player *player, const struct canvas *canvas, const struct beginning *beginning,
 						const struct showing *showing, struct error *error)
 {
 	struct player_picture picture = {.beginning = beginning, .showing = showing, .shown = canvas->picture};
@@ -56,23 +52,55 @@ static int show_picture(struct player *player, struct canvas *canvas, const stru
 	return player->observer.picture(player->observer.context, &picture, error);
 }
 
-static int play_beginning(struct player *player, struct canvas *canvas, const struct beginning *beginning,
+/*
+ * Makes the pictures of some showings and tells how many showings these are: a canvas for each that is not the picture
+ * of the one before.
+ */
+static int make_pictures(struct player *player, struct canvas canvases[BATCH], const struct showing *showings,
+						 uint32_t most, uint32_t *count, struct error *error)
+{
+	struct ahead ahead = {.engine = player->engine};
+	struct canvas *canvas = canvases;
+	int result = 0;
+	for (*count = 0; *count < most && result == 0; ++*count) {
+		const struct engine_request request = {showings[*count].show, showings[*count].phase};
+		if (showings[*count].repeat)
+			continue;
+		if (canvas == canvases + BATCH)
+			break;
+		result = canvas_fit(canvas, player->engine, error);
+		if (result == 0)
+			result = ahead_render(&ahead, &request, canvas->data, canvas->picture.stride, error);
+		canvas++;
+	}
+	return ahead_finish(&ahead, result, error);
+}
+
+/* The same showings: who looks. */
+static int show_pictures(struct player *player, const struct canvas *canvas, const struct beginning *beginning,
+						 const struct showing *showings, uint32_t count, struct error *error)
+{
+	int result = 0;
+	for (uint32_t i = 0; i < count && result == 0; i++) {
+		canvas += i > 0 && !showings[i].repeat;
+		result = show_picture(player, canvas, beginning, &showings[i], error);
+	}
+	return result;
+}
+
+static int play_beginning(struct player *player, struct canvas canvases[BATCH], const struct beginning *beginning,
 						  const struct frame *frame, struct error *error)
 {
+	const struct showing *showings = &player->schedule->showings[beginning->first_showing];
 	double start = now_ms();
 	int result = engine_begin(player->engine, frame, &beginning->params, error);
-	if (result == 0)
-		result = canvas_fit(canvas, player->engine, error);
 	double spent = now_ms() - start;
-	for (uint32_t i = 0; i < beginning->showing_count && result == 0; i++) {
-		const struct showing *showing = &player->schedule->showings[beginning->first_showing + i];
-		if (!showing->repeat) {
-			start = now_ms();
-			result = canvas_render(canvas, player->engine, showing, error);
-			spent += now_ms() - start;
-		}
+	for (uint32_t i = 0, count; i < beginning->showing_count && result == 0; i += count) {
+		start = now_ms();
+		result = make_pictures(player, canvases, &showings[i], beginning->showing_count - i, &count, error);
+		spent += now_ms() - start;
 		if (result == 0)
-			result = show_picture(player, canvas, beginning, showing, error);
+			result = show_pictures(player, canvases, beginning, &showings[i], count, error);
 	}
 	if (result < 0 || !player->observer.frame)
 		return result;
@@ -86,20 +114,21 @@ int player_run(struct player *player, struct error *error)
 {
 	struct real_frames real = {.reader = player->reader, .frames = player->frames};
 	struct progress progress = {.what = "real frames"};
-	struct canvas canvas = {0};
+	struct canvas canvases[BATCH] = {{0}};
 	int result = 0;
 	for (uint32_t i = 0; i < player->schedule->beginning_count && result == 0; i++) {
 		const struct beginning *beginning = &player->schedule->beginnings[i];
 		struct frame frame;
 		result = real_frames_load(&real, beginning, &frame, error);
 		if (result == 0)
-			result = play_beginning(player, &canvas, beginning, &frame, error);
+			result = play_beginning(player, canvases, beginning, &frame, error);
 		if (player->progress)
 			progress_show(&progress, i + 1, player->schedule->beginning_count);
 	}
 	progress_end(&progress);
 	real_frames_finish(&real);
-	free(canvas.data);
+	for (uint32_t i = 0; i < BATCH; i++)
+		free(canvases[i].data);
 	return result;
 }
 
@@ -142,17 +171,17 @@ void recorded_truth_destroy(struct recorded_truth **truth)
 
 static int make_truth(struct recorded_truth *truth, int64_t index, struct error *error)
 {
-	static const struct showing plain = {.show = ENGINE_SHOW_PLAIN};
+	static const struct engine_request plain = {.show = ENGINE_SHOW_PLAIN};
+	struct canvas *canvas = &truth->canvas;
 	struct frame frame;
 	uint64_t place = truth->frames->frames[index].index;
 	int result = recording_reader_frame(truth->reader, place, 2, &frame, NULL, error);
 	if (result == 0)
 		result = engine_begin(truth->engine, &frame, &(struct engine_begin_params){.n = 1}, error);
 	if (result == 0)
-		result = canvas_fit(&truth->canvas, truth->engine, error);
-	if (result == 0)
-		result = canvas_render(&truth->canvas, truth->engine, &plain, error);
-	return result;
+		result = canvas_fit(canvas, truth->engine, error);
+	struct engine_image image = {.data = canvas->data, .stride = canvas->picture.stride};
+	return result == 0 ? engine_render(truth->engine, &plain, &image, error) : result;
 }
 
 static const struct picture *get_recorded(void *context, const struct beginning *beginning,

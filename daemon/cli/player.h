@@ -3,7 +3,9 @@
 
 /*
  * Plays a schedule through an engine, one picture after the other, and hands
- * each to an observer, with its truth where there is one.
+ * each to an observer, with its truth where there is one. On a GPU the pictures
+ * of a real frame are drawn while those before come back; nobody looks at one
+ * meanwhile, so that its time is the engine's alone.
  */
 #ifndef PURSUIT_CLI_PLAYER_H
 #define PURSUIT_CLI_PLAYER_H

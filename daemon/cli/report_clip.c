@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ahead.h"
+
 #define ALIGNMENT 64u
 
 struct clip *clip_create(uint32_t width, uint32_t height, uint32_t reals, uint32_t shown, uint32_t sites,
@@ -95,14 +97,13 @@ void clip_show_truth(const struct clip *clip, uint8_t *const *pictures)
 
 int clip_play(const struct clip *clip, struct engine *engine, uint8_t *const *pictures, struct error *error)
 {
+	struct ahead ahead = {.engine = engine};
 	int result = 0;
 	for (uint32_t i = 0; i < clip->real_count && result == 0; i++) {
 		const struct clip_real *real = &clip->reals[i];
 		result = engine_begin(engine, &real->frame, &real->begin, error);
-		for (uint32_t k = real->first_shown; k < real->first_shown + real->shown_count && result == 0; k++) {
-			struct engine_image image = {pictures[k], 4 * (size_t)clip->width};
-			result = engine_render(engine, &clip->shown[k].request, &image, error);
-		}
+		for (uint32_t k = real->first_shown; k < real->first_shown + real->shown_count && result == 0; k++)
+			result = ahead_render(&ahead, &clip->shown[k].request, pictures[k], 4 * (size_t)clip->width, error);
 	}
-	return result;
+	return ahead_finish(&ahead, result, error);
 }
