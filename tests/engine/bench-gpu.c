@@ -12,6 +12,8 @@
  * figures that tell nothing about a GPU and say so; --quick: small and few, to see that it works.
  *
  * analyse: motion and depth to the plan, by the CPU from its memory, and by the GPU with the way up and back.
+ * frame: by the clock, from the planes to all pictures in memory: each picture waited for, and each coming back while
+ * the next one is drawn or the next real frame begun.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +21,7 @@
 
 #include "daemon/engine/engine.h"
 #include "tests/engine/bench-copy.h"
+#include "tests/engine/bench-read.h"
 #include "tests/engine/picture.h"
 
 #define FRAMES 31u
@@ -193,6 +196,26 @@ static void run_analysis(struct bench *bench)
 		fail(&error);
 }
 
+/* The same frames with both ways back. */
+static void run_read(struct bench *bench)
+{
+	const struct bench_read read = {.engine = bench->engine,
+									.pictures = bench->pictures,
+									.picture_count = PICTURES,
+									.n = bench->goal->n,
+									.frames = bench->frames};
+	struct bench_read_times times = {.waiting = 0.0};
+	struct error error;
+	if (bench_read(&read, &times, &error) < 0)
+		fail(&error);
+	print(bench, "frame-waiting", times.waiting, 0.0);
+	print(bench, "frame-ahead", times.ahead, 0.0);
+	printf("# ahead takes %.2f of the time of waiting; the pictures are %s\n", times.ahead / times.waiting,
+		   times.equal ? "equal" : "NOT EQUAL");
+	if (!times.equal)
+		exit(1);
+}
+
 static void run_goal(struct bench *bench, const struct goal *goal)
 {
 	uint8_t *out = malloc(4 * (size_t)goal->width * goal->height);
@@ -206,6 +229,7 @@ static void run_goal(struct bench *bench, const struct goal *goal)
 	print_passes(bench);
 	run(bench, out);
 	print_others(bench);
+	run_read(bench);
 	run_analysis(bench);
 	fflush(stdout);
 	for (uint32_t i = 0; i < PICTURES; i++)
@@ -230,7 +254,7 @@ static void make_engine(struct bench *bench, bool allow_software)
 	}
 	engine_destroy(&bench->engine);
 	bench->params.context = ENGINE_CONTEXT_EGL_SURFACELESS;
-	bench->params.query_software = true;
+	bench->params.query_software = bench->params.buffer_software = true;
 	bench->engine = engine_create(&bench->params, &error);
 	if (!bench->engine) {
 		printf("skipped: there is no EGL here: %s\n", error.text);
