@@ -398,7 +398,6 @@ static uint64_t run_seed(uint32_t seed)
 
 static void test_sequences(void)
 {
-	const bool on_cpu = strcmp(kind, "cpu") == 0;
 	uint64_t kept = 0;
 	for (uint32_t seed = 1; seed <= seeds; seed++)
 		kept += run_seed(seed);
