@@ -148,14 +148,18 @@ static int offer_slots(struct shim_attach *attach, const struct shim_layout *lay
 static void try_to_connect(struct shim_attach *attach, const struct shim_layout *layout, uint64_t now_ns)
 {
 	const char *path = "";
-	int result = -ENOENT;
+	int result = -ENOENT, why = ENOENT;
 
+	/* Told is the first path, or the first one where there is something. */
 	for (uint32_t i = 0; i < attach->path_count && result < 0; i++) {
-		path = attach->paths[i];
-		result = shim_packet_connect(path);
+		result = shim_packet_connect(attach->paths[i]);
+		if (i == 0 || (why == ENOENT && result != -ENOENT)) {
+			path = attach->paths[i];
+			why = -result;
+		}
 	}
 	if (result < 0) {
-		leave_for_now(attach, now_ns, "no daemon at", path, -result);
+		leave_for_now(attach, now_ns, "no daemon at", path, why);
 		return;
 	}
 	attach->socket = result;

@@ -191,7 +191,7 @@ enum pursuit_state {
 	PURSUIT_STATE_DETACHED = 0, /* no daemon; tried again by itself */
 	PURSUIT_STATE_ATTACHING = 1,
 	PURSUIT_STATE_ATTACHED = 2,
-	PURSUIT_STATE_REFUSED = 3 /* the daemon said no: pursuit_status() says why; tried again, rarely */
+	PURSUIT_STATE_REFUSED = 3 /* the daemon said no: pursuit_get_status() says why; tried again, rarely */
 };
 
 struct pursuit_status {

@@ -64,7 +64,8 @@ def man_option(option):
 
 
 SOCKET = """*PURSUIT_SOCKET*
-	Path of the daemon's socket. Else _$XDG_RUNTIME_DIR/pursuit/socket_, else _/run/pursuit/socket_.
+	Path of the daemon's socket. Else _$XDG_RUNTIME_DIR/pursuit/socket_ and, where no daemon answers there, that of the
+	machine, _/run/pursuit/socket_.
 """
 NO_COLOR = """*NO_COLOR*
 	Where it is set and not empty nothing is coloured; elsewhere only a terminal is.

@@ -14,6 +14,7 @@
 #include "proto/wire.h"
 
 #define ANSWER_LIMIT_MS 10000
+#define MACHINE_SOCKET "/run/pursuit/socket"
 
 /* A packet as it comes. */
 union packet {
@@ -24,32 +25,43 @@ union packet {
 	uint8_t bytes[PURSUIT_WIRE_MAX_PACKET];
 };
 
-static int usual_path(struct sockaddr_un *address, struct error *error)
+/* Of the folder's file. 0, -ENOENT if there is nothing, or another errno with a sentence. */
+static int dial(struct control *control, const char *folder, const char *file, struct error *error)
 {
-	const char *named = getenv("PURSUIT_SOCKET"), *runtime = getenv("XDG_RUNTIME_DIR");
-	int length;
-	if (named && *named)
-		length = snprintf(address->sun_path, sizeof(address->sun_path), "%s", named);
-	else if (runtime && *runtime)
-		length = snprintf(address->sun_path, sizeof(address->sun_path), "%s/pursuit/socket", runtime);
-	else
-		length = snprintf(address->sun_path, sizeof(address->sun_path), "/run/pursuit/socket");
-	if (length < 0 || (size_t)length >= sizeof(address->sun_path))
-		return error_set(error, -ENAMETOOLONG, "the path of the socket is longer than %zu bytes",
-						 sizeof(address->sun_path) - 1);
-	return 0;
+	struct sockaddr_un address = {.sun_family = AF_UNIX};
+	const int length = snprintf(address.sun_path, sizeof(address.sun_path), "%s%s", folder, file);
+	if (length < 0 || (size_t)length >= sizeof(address.sun_path))
+		return error_set(error, -ENAMETOOLONG, "%s%s: the path of a socket has at most %zu bytes", folder, file,
+						 sizeof(address.sun_path) - 1);
+	control->fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
+	if (control->fd < 0)
+		return error_set(error, -errno, "no socket: %s", strerror(errno));
+	if (connect(control->fd, (const struct sockaddr *)&address, sizeof(address)) == 0)
+		return 0;
+	const int result =
+		error_set(error, -errno, "no daemon at %s (%s). Start one: pursuitd", address.sun_path, strerror(errno));
+	control_close(control);
+	return result;
 }
 
-static int find_path(struct sockaddr_un *address, const char *path, struct error *error)
+/* As games have it: the user's own daemon, else the machine's. Told is the first, or the first one that is there. */
+static int dial_usual(struct control *control, struct error *error)
 {
-	*address = (struct sockaddr_un){.sun_family = AF_UNIX};
-	if (!path || !*path)
-		return usual_path(address, error);
-	if (strlen(path) >= sizeof(address->sun_path))
-		return error_set(error, -ENAMETOOLONG, "%s: the path of a socket has at most %zu bytes", path,
-						 sizeof(address->sun_path) - 1);
-	memcpy(address->sun_path, path, strlen(path) + 1);
-	return 0;
+	const char *named = getenv("PURSUIT_SOCKET"), *runtime = getenv("XDG_RUNTIME_DIR");
+	struct error other = {""};
+	if (named && *named)
+		return dial(control, named, "", error);
+	if (!runtime || !*runtime)
+		return dial(control, MACHINE_SOCKET, "", error);
+	int result = dial(control, runtime, "/pursuit/socket", error);
+	if (result == 0)
+		return 0;
+	const int second = dial(control, MACHINE_SOCKET, "", &other);
+	if (second == 0 || (result == -ENOENT && second != -ENOENT)) {
+		*error = other;
+		result = second;
+	}
+	return result;
 }
 
 /* Receives one packet. 0 or a negative errno with a sentence. */
@@ -105,18 +117,9 @@ static int greet(struct control *control, struct error *error)
 
 int control_open(struct control *control, const char *path, struct error *error)
 {
-	struct sockaddr_un address;
 	*control = (struct control){.fd = -1};
-	int result = find_path(&address, path, error);
-	if (result < 0)
-		return result;
-	control->fd = socket(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0);
-	if (control->fd < 0)
-		return error_set(error, -errno, "no socket: %s", strerror(errno));
-	if (connect(control->fd, (const struct sockaddr *)&address, sizeof(address)) < 0)
-		result =
-			error_set(error, -errno, "no daemon at %s (%s). Start one: pursuitd", address.sun_path, strerror(errno));
-	else
+	int result = path && *path ? dial(control, path, "", error) : dial_usual(control, error);
+	if (result == 0)
 		result = greet(control, error);
 	if (result < 0)
 		control_close(control);

@@ -15,9 +15,9 @@ struct control {
 };
 
 /*
- * Connects and says HELLO. path NULL: $PURSUIT_SOCKET, else
- * $XDG_RUNTIME_DIR/pursuit/socket, else /run/pursuit/socket. 0 or a negative
- * errno with a sentence that says what to do.
+ * Connects and says HELLO. path NULL: $PURSUIT_SOCKET if set; else
+ * $XDG_RUNTIME_DIR/pursuit/socket and, where no daemon answers there,
+ * /run/pursuit/socket. 0 or a negative errno with a sentence that says what to do.
  */
 int control_open(struct control *control, const char *path, struct error *error);
 void control_close(struct control *control);

@@ -14,7 +14,6 @@
 #include "daemon/clock.h"
 #include "interrupt.h"
 
-#define VERB "record"
 #define STEP_NS 50000000L
 
 static void wait_until_over(double seconds)
@@ -31,26 +30,27 @@ static json_int_t number_of(const json_t *reply, const char *name)
 }
 
 /* Asks for the end. */
-static int stop(struct control *control, const char *path, json_t **written, struct error *error)
+static int stop(struct control *control, const char *verb, const char *path, json_t **written, struct error *error)
 {
 	json_t *reply = NULL;
 	int result = control_ask(control, "record-stop", -1, &reply, error);
 	if (result < 0)
 		return result;
 	if (number_of(reply, "frames") == 0)
-		fprintf(stderr, "pursuit record: no frame came; does a client run? `pursuit status` says\n");
+		fprintf(stderr, "pursuit %s: no frame came; does a client run? `pursuit status` says\n", verb);
 	*written = json_pack("{s:s, s:I, s:I, s:I}", "recording", path, "frames", number_of(reply, "frames"), "dropped",
 						 number_of(reply, "dropped"), "bytes", number_of(reply, "bytes"));
 	json_decref(reply);
 	return 0;
 }
 
-int record_daemon(const char *path, const char *socket, double seconds, json_t **written)
+int record_daemon(const char *verb, const char *otherwise, const char *path, const char *socket, double seconds,
+				  json_t **written)
 {
 	struct control control;
 	struct error error = {{0}};
 	if (control_open(&control, socket, &error) < 0)
-		return args_failed(VERB, "%s. A scene needs none: pursuit record %s --scene colonnade", error.text, path);
+		return args_failed(verb, "%s%s", error.text, otherwise);
 	*written = NULL;
 	/* What it holds is the daemon's to cut off, should it say yes. */
 	int fd = open(path, O_WRONLY | O_CREAT | O_CLOEXEC, 0666), result;
@@ -64,9 +64,9 @@ int record_daemon(const char *path, const char *socket, double seconds, json_t *
 			if (isatty(STDERR_FILENO))
 				fprintf(stderr, "recording until %s\n", seconds > 0 ? "the time is over, or Ctrl-C" : "Ctrl-C");
 			wait_until_over(seconds);
-			result = stop(&control, path, written, &error);
+			result = stop(&control, verb, path, written, &error);
 		}
 	}
 	control_close(&control);
-	return result < 0 ? args_failed(VERB, "%s", error.text) : STATUS_DONE;
+	return result < 0 ? args_failed(verb, "%s", error.text) : STATUS_DONE;
 }

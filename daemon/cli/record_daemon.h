@@ -7,9 +7,12 @@
 
 #include <jansson.h>
 
-/* seconds 0: until Ctrl-C. socket NULL: the usual one. *written becomes
- * {recording, frames, dropped, bytes}, to be given to json_decref(). Gives the exit status back.
+/*
+ * seconds 0: until Ctrl-C. socket NULL: the usual one. *written becomes {recording, frames, dropped, bytes}, to be
+ * given to json_decref(). `verb` asks for it, and what fails, or that no frame came, is said in its name; where there
+ * is no daemon `otherwise` follows. Gives the exit status back.
  */
-int record_daemon(const char *path, const char *socket, double seconds, json_t **written);
+int record_daemon(const char *verb, const char *otherwise, const char *path, const char *socket, double seconds,
+				  json_t **written);
 
 #endif

@@ -101,7 +101,7 @@ int recorded_frames_read(struct recorded_frames *frames, struct recording_reader
 	if (frames->damaged > NAMED_DAMAGES)
 		fprintf(stderr, "pursuit: %u more frames are damaged and left out\n", frames->damaged - NAMED_DAMAGES);
 	if (frames->count == 0)
-		return error_set(error, -ENODATA, "no frame of this recording is whole");
+		return error_set(error, -ENODATA, "%s: no frame of this recording is whole", recording_reader_path(reader));
 	mend_times(frames);
 	set_positions(frames);
 	return set_interval(frames, error);

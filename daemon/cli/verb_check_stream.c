@@ -104,7 +104,8 @@ static int check_pairs(struct pair_reader *pairs, uint32_t wanted, struct error 
 	}
 	progress_end(&progress);
 	if (!pairs->inspect.frames)
-		return error_set(error, -ENODATA, "there are %" PRIu64 " whole frames, at least two are needed", frames);
+		return error_set(error, -ENODATA, "there %s %" PRIu64 " whole frame%s, at least two are needed",
+						 frames == 1 ? "is" : "are", frames, frames == 1 ? "" : "s");
 	return 0;
 }
 
@@ -175,10 +176,12 @@ static int check_daemon(const struct check_options *options)
 		return args_failed(VERB, "%s: %s", path, strerror(errno));
 	close(fd);
 	json_t *written = NULL;
-	int status = record_daemon(path, options->socket, options->seconds, &written);
-	json_decref(written);
+	int status = record_daemon(VERB, ". A recording needs none: pursuit check-stream IN.pursuit", path, options->socket,
+							   options->seconds, &written);
 	if (status == STATUS_DONE)
-		status = check_recording(path, options);
+		status =
+			json_integer_value(json_object_get(written, "frames")) > 0 ? check_recording(path, options) : STATUS_FAILED;
+	json_decref(written);
 	unlink(path);
 	return status;
 }

@@ -153,7 +153,8 @@ static int record_scene(const struct record_options *options)
 static int record_received(const struct record_options *options)
 {
 	json_t *written = NULL;
-	const int status = record_daemon(options->path, options->socket, options->seconds, &written);
+	const int status = record_daemon("record", ". A scene needs none: --scene NAME", options->path, options->socket,
+									 options->seconds, &written);
 	if (status != STATUS_DONE)
 		return status;
 	if (options->json)

@@ -74,6 +74,11 @@ const char *recording_reader_info(const struct recording_reader *reader)
 	return reader->scan.info ? reader->scan.info : "";
 }
 
+const char *recording_reader_path(const struct recording_reader *reader)
+{
+	return reader->scan.path;
+}
+
 uint64_t recording_reader_frame_count(const struct recording_reader *reader)
 {
 	return reader->scan.frame_count;

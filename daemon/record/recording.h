@@ -102,6 +102,8 @@ const char *recording_reader_info(const struct recording_reader *reader);
 /* The value of `key` in INFO text, without its line end; false if there is none or it does not fit. */
 bool recording_info_value(const char *info, const char *key, char *value, size_t size);
 uint64_t recording_reader_frame_count(const struct recording_reader *reader);
+/* As it was opened by; lives as long as the reader. */
+const char *recording_reader_path(const struct recording_reader *reader);
 
 /*
  * Decodes frame `index` (0 up). The frame and its planes belong to the reader

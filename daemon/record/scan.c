@@ -64,7 +64,8 @@ void scan_note_damage(struct scan *scan, uint64_t offset, const char *sentence)
 static void note_cut(struct scan *scan, uint64_t offset)
 {
 	char text[256];
-	snprintf(text, sizeof(text), "chunk %" PRIu64 " at byte %" PRIu64 " is cut off: the file ends at byte %" PRIu64,
+	snprintf(text, sizeof(text),
+			 "%.120s: chunk %" PRIu64 " at byte %" PRIu64 " is cut off: the file ends at byte %" PRIu64, scan->path,
 			 scan->next_sequence, offset, scan->size);
 	scan->summary.truncated = true;
 	note_sentence(scan, text);

@@ -106,6 +106,9 @@ class CheckStream(common.Case):
         self.assertIn("text", self.must("check-stream", self.path("text"), status=1).stderr)
         self.assertIn("there is no file", self.must("check-stream", self.path("none"), status=1).stderr.replace(
             "No such file", "there is no file"))
+        none = self.must("check-stream", "--socket", self.path("none"), status=1).stderr
+        self.assertRegex(none, r"^pursuit check-stream: no daemon at .*none")
+        self.assertNotIn("pursuit record", none)
         self.must("check-stream", "a", "b", status=2)
         one = self.record("one.pursuit", scene="still", size="16x16", fps=60, seconds=0.01)
         self.assertIn("at least two", self.must("check-stream", one, status=1).stderr)

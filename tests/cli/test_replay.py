@@ -177,6 +177,7 @@ class Replay(common.Case):
         with open(cut, "wb") as file:
             file.write(content[: len(content) // 2])
         result = self.must("replay", cut, "--method", "hold", "--json", self.path("cut.json"))
+        self.assertIn(f"{cut}: chunk", result.stderr)
         self.assertIn("cut off", result.stderr)
         with open(self.path("cut.json")) as file:
             figures = json.load(file)

@@ -449,7 +449,11 @@ static void test_environment(void)
 	pursuit_update(stream);
 	sleep_ms(30);
 	pursuit_update(stream);
-	CHECK(strstr(status_of(stream).message, "/run/pursuit/socket"));
+	CHECK(strstr(status_of(stream).message, runtime));
+	unlink(runtime);
+	sleep_ms(30);
+	pursuit_update(stream);
+	CHECK(strstr(status_of(stream).message, runtime));
 	CHECK(close_stream(&stream));
 
 	setenv("PURSUIT_SOCKET", harness.path, 1);
