@@ -59,11 +59,38 @@ static void watch_place(struct reload *reload, struct reload_place *place, const
 		set_timer(reload); /* it came before the one above was watched */
 }
 
+/* Those above the folder of the file, the root apart, which stays. One that may not be watched is left out. */
+static void watch_above(struct reload *reload, const char *file)
+{
+	char path[PATH_MAX], folder[PATH_MAX], name[NAME_MAX + 1];
+	snprintf(path, sizeof(path), "%s", file);
+	split(path, folder, name);
+	while (reload->above_count < RELOAD_ABOVE) {
+		snprintf(path, sizeof(path), "%s", folder);
+		split(path, folder, name);
+		if (strcmp(folder, "./") == 0 || strcmp(folder, "/") == 0)
+			break;
+		const int watch = inotify_add_watch(reload->watch_fd, folder, IN_MOVE_SELF | IN_ONLYDIR | IN_MASK_ADD);
+		if (watch >= 0)
+			reload->above[reload->above_count++] = watch;
+	}
+}
+
 static void add_place(struct reload *reload, const char *path)
 {
 	const char *slash = strrchr(path, '/');
-	if (reload->place_count < RELOAD_PLACES && strlen(slash ? slash + 1 : path) <= NAME_MAX && strlen(path) < PATH_MAX)
-		watch_place(reload, &reload->places[reload->place_count++], path);
+	if (reload->place_count == RELOAD_PLACES || strlen(slash ? slash + 1 : path) > NAME_MAX || strlen(path) >= PATH_MAX)
+		return;
+	watch_place(reload, &reload->places[reload->place_count++], path);
+	watch_above(reload, path);
+}
+
+static bool is_above(const struct reload *reload, int watch)
+{
+	for (unsigned i = 0; i < reload->above_count; i++)
+		if (reload->above[i] == watch)
+			return true;
+	return false;
 }
 
 static bool is_watched(const struct reload *reload, int watch)
@@ -71,17 +98,19 @@ static bool is_watched(const struct reload *reload, int watch)
 	for (unsigned i = 0; i < reload->place_count; i++)
 		if (reload->places[i].watch == watch)
 			return true;
-	return false;
+	return is_above(reload, watch);
 }
 
 /* Links may lead elsewhere by now, folders may have come: at each reading anew. The kernel knows watches it has. */
 static void watch_files(struct reload *reload)
 {
-	int before[RELOAD_PLACES];
-	const unsigned count = reload->place_count;
-	for (unsigned i = 0; i < count; i++)
-		before[i] = reload->places[i].watch;
-	reload->place_count = 0;
+	int before[RELOAD_PLACES + RELOAD_ABOVE];
+	unsigned count = 0;
+	for (unsigned i = 0; i < reload->place_count; i++)
+		before[count++] = reload->places[i].watch;
+	for (unsigned i = 0; i < reload->above_count; i++)
+		before[count++] = reload->above[i];
+	reload->place_count = reload->above_count = 0;
 	for (unsigned i = 0; i < reload->file_count; i++) {
 		char *real = realpath(reload->files[i], NULL);
 		add_place(reload, reload->files[i]);
@@ -118,7 +147,7 @@ static bool concerns_us(const struct reload *reload, const struct inotify_event 
 		if (event->len > 0 && strcmp(reload->places[i].name, event->name) == 0)
 			return is_whole(reload, event);
 	}
-	return false;
+	return event->mask & GONE && is_above(reload, event->wd);
 }
 
 /* ---- events ---- */

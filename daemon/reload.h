@@ -5,9 +5,11 @@
  * Reads command line and configuration files again: when one of the files has
  * changed, for SIGHUP, and on request. With a mistake in them all stays as it
  * is, and the log says where the mistake is. The folders of the files are
- * watched, so that a file may be written in place, be replaced, be taken away
- * and come back, its folders too; a burst of changes counts as one. A file that
- * is still being written is not read. On main; frames do not notice.
+ * watched, and whether those above them move, so that a file may be written in
+ * place, be replaced, be taken away and come back, its folders too; a burst of
+ * changes counts as one. A file that is still being written is not read. Not
+ * noticed: another end of a link among the folders above. On main; frames do not
+ * notice.
  */
 #ifndef PURSUIT_RELOAD_H
 #define PURSUIT_RELOAD_H
@@ -22,6 +24,9 @@
 
 /* The folder of the file, and that of what it is a link to. */
 #define RELOAD_PLACES (2u * ARGUMENTS_FILES)
+
+/* Folders above these: more than paths have, as a rule. */
+#define RELOAD_ABOVE 64u
 
 struct reload_place {
 	char name[NAME_MAX + 1]; /* in the folder that is watched: of the file, or of the missing folder above it */
@@ -40,6 +45,8 @@ struct reload {
 	struct loop_source *watch_source, *timer_source;
 	struct reload_place places[RELOAD_PLACES];
 	unsigned place_count;
+	int above[RELOAD_ABOVE]; /* watches of the folders above, which may move or go */
+	unsigned above_count;
 	uint64_t first_ns; /* change that was not read yet; 0: none */
 };
 

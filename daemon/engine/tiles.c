@@ -84,6 +84,50 @@ void tiles_mark_all(struct tiles *tiles)
 	memset(tiles->marked, 1, tiles->count);
 }
 
+/* Where rows of tiles end that are marked alike. */
+static uint32_t end_of_rows(const struct tiles *tiles, uint32_t row)
+{
+	const uint8_t *marked = tiles->marked + (size_t)row * tiles->columns;
+	uint32_t end = row + 1;
+	while (end < tiles->rows && memcmp(marked, tiles->marked + (size_t)end * tiles->columns, tiles->columns) == 0)
+		end++;
+	return end;
+}
+
+/* The next marked tiles of a row, from the column `range->end` on; false: there are no more. */
+static bool next_range(const struct tiles *tiles, uint32_t row, uint32_t gap, struct range *range)
+{
+	const uint8_t *marked = tiles->marked + (size_t)row * tiles->columns;
+	uint32_t column = range->end;
+	while (column < tiles->columns && !marked[column])
+		column++;
+	range->first = range->end = column;
+	for (; column < tiles->columns && column < range->end + gap; column++)
+		if (marked[column])
+			range->end = column + 1;
+	return range->first < range->end;
+}
+
+static uint32_t clip(uint32_t tiles, uint32_t tile, uint32_t size)
+{
+	return tiles * tile < size ? tiles * tile : size;
+}
+
+bool tiles_next_bounds(const struct tiles *tiles, uint32_t gap, struct bounds *bounds)
+{
+	struct range range = {0, (bounds->right + tiles->tile_width - 1) / tiles->tile_width};
+	for (uint32_t row = bounds->top / tiles->tile_height, end; row < tiles->rows; row = end, range.end = 0) {
+		end = end_of_rows(tiles, row);
+		if (!next_range(tiles, row, gap, &range))
+			continue;
+		*bounds = (struct bounds){range.first * tiles->tile_width, row * tiles->tile_height,
+								  clip(range.end, tiles->tile_width, tiles->width),
+								  clip(end, tiles->tile_height, tiles->height)};
+		return true;
+	}
+	return false;
+}
+
 size_t tiles_most_numbers(const struct tiles *tiles)
 {
 	return 12 * (size_t)tiles->rows * ((tiles->columns + 1) / 2);

@@ -9,6 +9,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "daemon/engine/bounds.h"
+
 struct tiles {
 	uint32_t width, height;           /* of the picture, pixels */
 	uint32_t tile_width, tile_height; /* pixels */
@@ -37,6 +39,13 @@ bool tiles_touch(const struct tiles *tiles, struct box box);
 
 /* Marks everything. */
 void tiles_mark_all(struct tiles *tiles);
+
+/*
+ * The next of the rectangles of pixels that cover the marked tiles, none twice; the first after a zeroed one. Tiles
+ * between marked ones of a row that are fewer than `gap`, at least 1, go along. False: there are no more.
+ */
+bool tiles_next_bounds(const struct tiles *tiles, uint32_t gap, struct bounds *bounds);
+
 /*
  * Writes the marked tiles as triangles, 12 numbers (x, y of 6 corners, pixels) a row of neighbours; returns how many
  * numbers. `numbers` has room for tiles_most_numbers().

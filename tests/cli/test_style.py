@@ -5,8 +5,10 @@ import os
 import pty
 import re
 import select
+import shutil
 import signal
 import subprocess
+import tempfile
 import time
 
 import common
@@ -51,34 +53,50 @@ COLOR = re.compile(r"\x1b\[[0-9;]*m")
 
 
 class Style(common.Case):
-    def setUp(self):
-        super().setUp()
-        self.socket, self.number = self.path("socket"), 0
-        self.recording = self.record("in.pursuit", scene="still", size="16x16", seconds=0.05)
-        self.must("export", self.recording, "--color", self.path("c_%04d.png"))
-        self.log = open(self.path("log"), "w")
-        self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--latency"], stderr=self.log)
+    number = 0
+
+    @classmethod
+    def setUpClass(cls):
+        """One folder, recording, daemon and client for all: no test changes them but by what `set` sets."""
+        cls.folder = tempfile.mkdtemp(prefix="pursuit-test-")
+        cls.socket, cls.recording = cls.folder + "/socket", cls.folder + "/in.pursuit"
+        for made in (["record", cls.recording, "--scene", "still", "--size", "16x16", "--fps", "120", "--seconds", "0.05"],
+                     ["export", cls.recording, "--color", cls.folder + "/c_%04d.png"]):
+            common.run(*made).check_returncode()
+        cls.log = open(cls.folder + "/log", "w")
+        cls.daemon = subprocess.Popen([PURSUITD, "--socket", cls.socket, "--latency"], stderr=cls.log)
         for _ in range(600):
-            if os.path.exists(self.socket) or self.daemon.poll() is not None:
+            if os.path.exists(cls.socket) or cls.daemon.poll() is not None:
                 break
             time.sleep(0.05)
-        self.client = subprocess.Popen([EXAMPLE, "--seconds", "600"], stdout=self.log, stderr=self.log,
-                                       env={**os.environ, "PURSUIT_SOCKET": self.socket})
-        time.sleep(1.5)
+        cls.client = subprocess.Popen([EXAMPLE, "--seconds", "3000"], stdout=cls.log, stderr=cls.log,
+                                      env={**os.environ, "PURSUIT_SOCKET": cls.socket})
+        for _ in range(600):
+            status = common.run("status", "--json", "--socket", cls.socket).stdout
+            if status and json.loads(status)["real_frames"] > 60:
+                break
+            time.sleep(0.1)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.client.terminate()
+        cls.client.wait()
+        cls.daemon.send_signal(signal.SIGTERM)
+        cls.daemon.wait(60)
+        cls.log.close()
+        shutil.rmtree(cls.folder, ignore_errors=True)
+
+    def setUp(self):
+        pass
 
     def tearDown(self):
-        self.client.terminate()
-        self.client.wait()
-        self.daemon.send_signal(signal.SIGTERM)
-        self.daemon.wait(60)
-        self.log.close()
-        super().tearDown()
+        self.assertIsNone(self.daemon.poll(), "the daemon is gone")
 
     def verbs(self):
         return [line.split("\t")[0] for line in self.must("--print-verbs").stdout.splitlines()]
 
     def words(self, listed):
-        self.number += 1
+        Style.number += 1
         known = {"IN": self.recording, "SOCKET": self.socket, "FOLDER": self.folder, "OUT": self.path(f"out{self.number}")}
         return [re.sub("^(IN|SOCKET|FOLDER|OUT)", lambda found: known[found.group(1)], word) for word in listed]
 

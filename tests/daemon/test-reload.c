@@ -213,7 +213,7 @@ static void test_many_links(void)
 		snprintf(text, sizeof(text), "\ncell = %d\n", 20 + i);
 		CHECK(setting_comes(text));
 	}
-	CHECK_INT(watches(), 2);
+	CHECK_INT(watches(), 3); /* with the one that the fixture's folder is in */
 	CHECK(unlink(config) == 0);
 }
 
@@ -266,7 +266,7 @@ static void test_missing(void)
 /* Its folders taken away and made again, one by one; moved away and back; another put in their place. */
 static void test_folders(void)
 {
-	char outer[128], inner[160], file[192], aside[160], aside_file[192], minus[200];
+	char outer[128], inner[160], file[192], aside[160], aside_file[192], minus[200], away[160];
 	const char *const arguments[] = {"--config", minus, NULL};
 	snprintf(outer, sizeof(outer), "%s/outer", fixture.folder);
 	snprintf(inner, sizeof(inner), "%s/inner", outer);
@@ -274,6 +274,7 @@ static void test_folders(void)
 	snprintf(aside, sizeof(aside), "%s/aside", fixture.folder);
 	snprintf(aside_file, sizeof(aside_file), "%s/file", aside);
 	snprintf(minus, sizeof(minus), "-%s", file);
+	snprintf(away, sizeof(away), "%s/away", fixture.folder);
 	CHECK(mkdir(outer, 0700) == 0 && mkdir(inner, 0700) == 0);
 	write_file(file, "cell = 20\n");
 	fixture_start(&fixture, arguments);
@@ -301,6 +302,17 @@ static void test_folders(void)
 	CHECK(cell_becomes(31));
 	write_file(file, "cell = 32\n");
 	CHECK(cell_becomes(32));
+
+	CHECK(rename(outer, away) == 0); /* a folder above that of the file */
+	CHECK(cell_becomes(8));
+	CHECK(rename(away, outer) == 0);
+	CHECK(cell_becomes(32));
+	CHECK(mkdir(away, 0700) == 0);
+	CHECK(renameat2(AT_FDCWD, away, AT_FDCWD, outer, RENAME_EXCHANGE) == 0);
+	CHECK(cell_becomes(8));
+	CHECK(mkdir(inner, 0700) == 0);
+	write_file(file, "cell = 34\n");
+	CHECK(cell_becomes(34));
 	close(fd);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }

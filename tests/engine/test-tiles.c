@@ -3,13 +3,14 @@
 
 /*
  * The CPU executor: its threads, every pixel of a displaced grid covered by some triangle however wild the grid, and
- * equal bits from every instruction set and every number of threads.
+ * equal bits from every instruction set and every number of threads. And what both executors know of tiles.
  */
 #include "tests/test.h"
 
 #include <stdatomic.h>
 
 #include "daemon/engine/cpu/executor_cpu.h"
+#include "daemon/engine/gl/tile_hash.h"
 #include "tests/engine/picture.h"
 
 static atomic_uint allocations;
@@ -320,6 +321,74 @@ static void test_images_in_turn(void)
 	contents_finish(&contents);
 }
 
+/* Adds a rectangle to the counts of what covers each tile. */
+static void cover(const struct tiles *tiles, const struct bounds *bounds, uint8_t *covered)
+{
+	CHECK(bounds->right <= tiles->width && bounds->bottom <= tiles->height);
+	for (uint32_t y = bounds->top; y < bounds->bottom; y += tiles->tile_height)
+		for (uint32_t x = bounds->left; x < bounds->right; x += tiles->tile_width)
+			covered[y / tiles->tile_height * tiles->columns + x / tiles->tile_width]++;
+}
+
+/* Rectangles cover what is marked, nothing twice, and without a gap nothing else. */
+static void test_bounds_of_tiles(void)
+{
+	struct tiles tiles = {0};
+	uint32_t random = 5;
+	long wrong = 0;
+	for (uint32_t round = 0; round < 400; round++) {
+		const uint32_t gap = 1 + round % 4, rarity = 1 + round / 50;
+		CHECK(tiles_begin(&tiles, 1 + picture_random(&random) % 700, 1 + picture_random(&random) % 300, 64, 32));
+		for (uint32_t i = 0; i < tiles.columns * tiles.rows; i++)
+			tiles.marked[i] = (picture_random(&random) >> 8) % rarity == 0;
+		uint8_t covered[11 * 10] = {0};
+		for (struct bounds bounds = {0}; tiles_next_bounds(&tiles, gap, &bounds);)
+			cover(&tiles, &bounds, covered);
+		for (uint32_t i = 0; i < tiles.columns * tiles.rows; i++)
+			wrong += covered[i] > 1 || (tiles.marked[i] && !covered[i]) || (gap == 1 && covered[i] != tiles.marked[i]);
+	}
+	CHECK_INT(wrong, 0);
+	tiles_finish(&tiles);
+}
+
+static struct tile_hash hash_of(const struct tile_key *key, const uint8_t *pixels, uint32_t width, uint32_t rows)
+{
+	struct tile_hash hashes[3] = {0};
+	for (uint32_t y = 0; y < rows; y++)
+		tile_hash_row(key, y, pixels + 4 * (size_t)width * y, width, hashes);
+	return hashes[(width - 1) / TILE_WIDTH];
+}
+
+/* The last of some tiles beside each other, also a narrow one: any bit of it counts, and where it is. */
+static void test_hash_of_tiles(void)
+{
+	static const uint32_t widths[] = {64, 1, 37, 130, 192};
+	static uint8_t pixels[4 * 192 * TILE_HEIGHT];
+	static struct tile_key key, other;
+	struct error error;
+	uint32_t random = 3;
+	CHECK_INT(tile_key_make(&key, &error), 0);
+	CHECK_INT(tile_key_make(&other, &error), 0);
+	for (size_t i = 0; i < sizeof(pixels); i++)
+		pixels[i] = (uint8_t)(picture_random(&random) >> 8);
+	for (size_t i = 0; i < sizeof(widths) / sizeof(widths[0]); i++) {
+		const uint32_t width = widths[i], first = (width - 1) / TILE_WIDTH * TILE_WIDTH;
+		const struct tile_hash want = hash_of(&key, pixels, width, TILE_HEIGHT);
+		const struct tile_hash another = hash_of(&other, pixels, width, TILE_HEIGHT);
+		CHECK(!tile_hash_equal(&want, &another));
+		for (uint32_t k = 0; k < 300; k++) {
+			const uint32_t x = first + picture_random(&random) % (width - first), y = k % TILE_HEIGHT;
+			uint8_t *byte = pixels + 4 * ((size_t)width * y + x) + k % 4;
+			*byte ^= (uint8_t)(1u << k % 8);
+			const struct tile_hash changed = hash_of(&key, pixels, width, TILE_HEIGHT);
+			*byte ^= (uint8_t)(1u << k % 8);
+			CHECK(changed.halves[0] != want.halves[0] && changed.halves[1] != want.halves[1]);
+		}
+		const struct tile_hash same = hash_of(&key, pixels, width, TILE_HEIGHT);
+		CHECK(tile_hash_equal(&want, &same));
+	}
+}
+
 static void test_refuses(void)
 {
 	struct error error = {""};
@@ -340,6 +409,8 @@ int main(void)
 	RUN(test_no_allocation_in_the_steady_state);
 	RUN(test_hostile_motion);
 	RUN(test_images_in_turn);
+	RUN(test_bounds_of_tiles);
+	RUN(test_hash_of_tiles);
 	RUN(test_refuses);
 	return test_result();
 }

@@ -70,6 +70,7 @@ static void destroy(struct executor **executor)
 	context_destroy(&gone->context);
 	pool_destroy(&gone->base.pool);
 	contents_finish(&gone->contents);
+	tiles_finish(&gone->leaving);
 	free(gone->intake.hashes[0]);
 	free(gone->intake.hashes[1]);
 	free(gone->intake.rows);

@@ -45,6 +45,7 @@ struct executor_gl {
 	struct tile_buffer level_tiles;
 	struct gl_layers layers;
 	struct gl_shown shown;
+	struct tiles leaving;            /* of the picture that goes out: those that the image does not have */
 	GLuint copy_framebuffer;         /* of the texture that a picture is copied to */
 	GLuint no_attributes;            /* a vertex array with nothing in it */
 	GLuint depth, depth_framebuffer; /* SHOWN with depth; 0 until the first fold */
@@ -72,6 +73,14 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
  * negative errno with a sentence.
  */
 int gl_picture(struct engine *engine, enum picture_id id, const struct target **picture, struct error *error);
+
+/*
+ * The picture goes out to an image that was left with the number job.held: marks in `leaving` which tiles of it the
+ * image does not have. gl_close_image() afterwards, if it went well; `bytes`: how many of it went out. 0, or -ENOMEM
+ * with a sentence.
+ */
+int gl_open_image(struct engine *engine, struct sheet *sheet, struct error *error);
+void gl_close_image(struct engine *engine, const struct sheet *sheet, uint64_t bytes);
 
 /*
  * Copies pixels to the same places of another picture of that size, as blending and scissor are set. 0, or -EIO with a

@@ -11,28 +11,42 @@ static void widen_stream(struct engine *engine)
 	stream_widen(&executor->stream, executor->contents.rows * (engine->ui_plane.role ? 2 : 1));
 }
 
-static int run(struct engine *engine, struct error *error)
+/* The marked tiles of what is bound for reading; there when it returns, or when job.arrival has come. */
+static int read_tiles(struct engine *engine, uint64_t *bytes, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
 	struct readback *readback = &gl_of(engine)->readback;
 	const struct engine_image *image = engine->job.image;
-	const struct target *picture;
+	const struct readback_image to = {image->data, image->stride, &gl_of(engine)->leaving};
 	struct arrival now = {.missing = 0};
-	int result = gl_picture(engine, engine->job.picture, &picture, error);
-	if (result < 0)
-		return result;
-	gl->BindFramebuffer(GL_READ_FRAMEBUFFER, picture->framebuffer);
-	const struct readback_image to = {image->data, image->stride, picture->width, picture->height};
-	engine->report.bytes_down += 4 * (uint64_t)picture->width * picture->height;
 	if (!engine->job.arrival) {
-		result = readback_ask(readback, gl, &to, &now, false, error);
+		const int result = readback_ask(readback, gl, &to, &now, false, bytes, error);
 		return result < 0 ? result : readback_receive(readback, gl, &now, error);
 	}
 	if (readback->buffered)
 		widen_stream(engine);
-	result = readback_ask(readback, gl, &to, engine->job.arrival, true, error);
+	const int result = readback_ask(readback, gl, &to, engine->job.arrival, true, bytes, error);
 	gl->Flush();
 	return result;
+}
+
+static int run(struct engine *engine, struct error *error)
+{
+	const struct target *picture;
+	struct sheet sheet;
+	uint64_t bytes = 0;
+	int result = gl_picture(engine, engine->job.picture, &picture, error);
+	if (result == 0)
+		result = gl_open_image(engine, &sheet, error);
+	if (result < 0)
+		return result;
+	table_of(engine)->BindFramebuffer(GL_READ_FRAMEBUFFER, picture->framebuffer);
+	result = read_tiles(engine, &bytes, error);
+	if (result < 0)
+		return result;
+	engine->report.bytes_down += bytes;
+	gl_close_image(engine, &sheet, bytes);
+	return 0;
 }
 
 const struct pass gl_pass_read = {.run = run};

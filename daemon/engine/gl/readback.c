@@ -9,6 +9,9 @@
 /* A GPU that needs longer is not coming back. */
 #define PATIENCE_NS UINT64_C(5000000000)
 
+/* A call costs more than so many tiles of a row beside each other. */
+#define TILES_OF_CALL 3u
+
 _Static_assert(4 * PURSUIT_MAX_SIZE <= READBACK_BLOCK, "a block holds a row");
 
 static uint32_t buffers(const struct readback *readback)
@@ -66,7 +69,9 @@ void readback_finish(struct readback *readback, const struct gl *gl)
 {
 	readback_forget(readback, gl);
 	gl->DeleteBuffers((GLsizei)readback->spare_count, readback->spare);
-	*readback = (struct readback){.buffered = readback->buffered};
+	const bool buffered = readback->buffered;
+	memset(readback, 0, sizeof(*readback));
+	readback->buffered = buffered;
 }
 
 /* ---- there ---- */
@@ -85,12 +90,12 @@ static int empty(const struct readback_block *block, const struct gl *gl, struct
 	if (!is_filled(block, gl))
 		return error_set(error, -EIO, "the context is lost: a block of rows does not come back");
 	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, block->buffer);
-	const uint8_t *from =
-		gl->MapBufferRange(GL_PIXEL_PACK_BUFFER, 0, (GLsizeiptr)(block->row_bytes * block->rows), GL_MAP_READ_BIT);
+	const uint8_t *from = gl->MapBufferRange(GL_PIXEL_PACK_BUFFER, 0, (GLsizeiptr)block->bytes, GL_MAP_READ_BIT);
 	if (!from)
-		return error_set(error, -EIO, "the renderer does not give back a block of %u rows", block->rows);
-	for (uint32_t i = 0; i < block->rows; i++)
-		memcpy(block->data + i * block->stride, from + i * block->row_bytes, block->row_bytes);
+		return error_set(error, -EIO, "the renderer does not give back a block of %zu bytes", block->bytes);
+	for (const struct readback_piece *piece = block->pieces; piece < block->pieces + block->count; piece++)
+		for (uint32_t i = 0; i < piece->rows; i++)
+			memcpy(piece->data + i * piece->stride, from + piece->offset + i * piece->row_bytes, piece->row_bytes);
 	return gl->UnmapBuffer(GL_PIXEL_PACK_BUFFER) ? 0 : error_set(error, -EIO, "the renderer lost a block of rows");
 }
 
@@ -115,53 +120,110 @@ int readback_receive(struct readback *readback, const struct gl *gl, const struc
 
 /* ---- asked for ---- */
 
-static void read_at_once(const struct gl *gl, const struct readback_image *image)
+/* A read that is under way: what is asked for, and how many blocks may be. */
+struct asking {
+	const struct readback_image *image;
+	struct arrival *arrival;
+	struct readback_block *open; /* that has room yet; NULL: none */
+	uint32_t limit;
+};
+
+static uint8_t *place_of(const struct readback_image *image, const struct bounds *bounds)
 {
-	gl->PixelStorei(GL_PACK_ROW_LENGTH, (GLint)(image->stride / 4));
-	gl->ReadPixels(0, 0, (GLsizei)image->width, (GLsizei)image->height, gl->pixel_format, gl->pixel_type, image->data);
+	return image->data + bounds->top * image->stride + 4 * (size_t)bounds->left;
 }
 
-static void ask_for_rows(struct readback *readback, const struct gl *gl, const struct readback_image *image,
-						 uint32_t first, uint32_t rows, struct arrival *arrival)
+static void read_at_once(const struct gl *gl, const struct readback_image *image, const struct bounds *bounds)
 {
-	struct readback_block *block = block_at(readback, readback->count);
-	*block = (struct readback_block){.buffer = make_buffer(readback, gl),
-									 .data = image->data + first * image->stride,
-									 .stride = image->stride,
-									 .row_bytes = 4 * (size_t)image->width,
-									 .rows = rows,
-									 .arrival = arrival};
-	gl->PixelStorei(GL_PACK_ROW_LENGTH, 0);
-	gl->ReadPixels(0, (GLint)first, (GLsizei)image->width, (GLsizei)rows, gl->pixel_format, gl->pixel_type, NULL);
-	block->filled = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+	gl->PixelStorei(GL_PACK_ROW_LENGTH, (GLint)(image->stride / 4));
+	gl->ReadPixels((GLint)bounds->left, (GLint)bounds->top, (GLsizei)(bounds->right - bounds->left),
+				   (GLsizei)(bounds->bottom - bounds->top), gl->pixel_format, gl->pixel_type, place_of(image, bounds));
+}
+
+static void close_block(const struct gl *gl, struct asking *asking)
+{
+	if (asking->open)
+		asking->open->filled = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+	asking->open = NULL;
+}
+
+static int open_block(struct readback *readback, const struct gl *gl, struct asking *asking, struct error *error)
+{
+	close_block(gl, asking);
+	const int result = readback->count >= asking->limit ? receive_oldest(readback, gl, error) : 0;
+	if (result < 0)
+		return result;
+	asking->open = block_at(readback, readback->count);
+	*asking->open = (struct readback_block){.buffer = make_buffer(readback, gl), .arrival = asking->arrival};
 	readback->count++;
-	arrival->missing++;
+	asking->arrival->missing++;
+	return 0;
+}
+
+/* Rows of that many bytes for which the open block has room. */
+static uint32_t room(const struct asking *asking, size_t row_bytes)
+{
+	if (!asking->open || asking->open->count == READBACK_PIECES)
+		return 0;
+	return (uint32_t)((READBACK_BLOCK - asking->open->bytes) / row_bytes);
+}
+
+static void ask_for_piece(const struct gl *gl, struct asking *asking, const struct bounds *bounds)
+{
+	struct readback_block *block = asking->open;
+	struct readback_piece *piece = &block->pieces[block->count++];
+	const uint32_t width = bounds->right - bounds->left, rows = bounds->bottom - bounds->top;
+	*piece = (struct readback_piece){block->bytes, place_of(asking->image, bounds), asking->image->stride,
+									 4 * (size_t)width, rows};
+	block->bytes += piece->row_bytes * rows;
+	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, block->buffer);
+	gl->PixelStorei(GL_PACK_ROW_LENGTH, 0);
+	gl->ReadPixels((GLint)bounds->left, (GLint)bounds->top, (GLsizei)width, (GLsizei)rows, gl->pixel_format,
+				   gl->pixel_type, (void *)piece->offset);
+}
+
+static int ask_for(struct readback *readback, const struct gl *gl, struct asking *asking, const struct bounds *bounds,
+				   struct error *error)
+{
+	const size_t row_bytes = 4 * (size_t)(bounds->right - bounds->left);
+	struct bounds part = *bounds;
+	int result = 0;
+	for (; part.top < bounds->bottom && result == 0; part.top = part.bottom) {
+		if (!room(asking, row_bytes))
+			result = open_block(readback, gl, asking, error);
+		if (result < 0)
+			break;
+		const uint32_t rows = room(asking, row_bytes), left = bounds->bottom - part.top;
+		part.bottom = part.top + (rows < left ? rows : left);
+		ask_for_piece(gl, asking, &part);
+	}
+	return result;
 }
 
 /* Blocks that may be under way while these are asked for. */
-static uint32_t allowed(const struct readback *readback, uint32_t asked, bool ahead)
+static uint32_t allowed(const struct readback *readback, const struct tiles *tiles, bool ahead)
 {
+	const uint32_t most = (uint32_t)(READBACK_BLOCK / (4 * (size_t)tiles->width));
+	const uint32_t asked = (tiles->height + most - 1) / most;
 	const uint32_t made = buffers(readback) > READBACK_BLOCKS ? buffers(readback) : READBACK_BLOCKS;
 	const uint32_t wanted = ahead && readback->count + asked > made ? readback->count + asked : made;
 	return wanted < READBACK_MOST ? wanted : READBACK_MOST;
 }
 
 int readback_ask(struct readback *readback, const struct gl *gl, const struct readback_image *image,
-				 struct arrival *arrival, bool ahead, struct error *error)
+				 struct arrival *arrival, bool ahead, uint64_t *bytes, struct error *error)
 {
-	if (!readback->buffered) {
-		read_at_once(gl, image);
-		return 0;
-	}
-	const uint32_t most = (uint32_t)(READBACK_BLOCK / (4 * (size_t)image->width));
-	const uint32_t limit = allowed(readback, (image->height + most - 1) / most, ahead);
+	struct asking asking = {.image = image, .arrival = arrival, .limit = allowed(readback, image->tiles, ahead)};
+	struct bounds bounds = {0};
 	int result = 0;
-	for (uint32_t y = 0; y < image->height && result == 0; y += most) {
-		if (readback->count >= limit)
-			result = receive_oldest(readback, gl, error);
-		if (result == 0)
-			ask_for_rows(readback, gl, image, y, image->height - y < most ? image->height - y : most, arrival);
+	while (result == 0 && tiles_next_bounds(image->tiles, TILES_OF_CALL, &bounds)) {
+		*bytes += 4 * (uint64_t)(bounds.right - bounds.left) * (bounds.bottom - bounds.top);
+		if (readback->buffered)
+			result = ask_for(readback, gl, &asking, &bounds, error);
+		else
+			read_at_once(gl, image, &bounds);
 	}
+	close_block(gl, &asking);
 	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 	return result;
 }

@@ -15,6 +15,7 @@
 
 #include "daemon/engine/arrival.h"
 #include "daemon/engine/gl/gl.h"
+#include "daemon/engine/tiles.h"
 #include "daemon/error.h"
 
 /* Bytes; a row of the widest picture is less. */
@@ -25,13 +26,23 @@
  * for. */
 #define READBACK_MOST 128u
 
-/* Rows in a buffer, and where they belong. */
-struct readback_block {
-	GLuint buffer;
-	GLsync filled; /* NULL: it never will be */
+/* Rectangles of a block. */
+#define READBACK_PIECES 16u
+
+/* A rectangle in a buffer, one row after another, and where it belongs. */
+struct readback_piece {
+	size_t offset; /* in the buffer */
 	uint8_t *data;
 	size_t stride, row_bytes;
 	uint32_t rows;
+};
+
+struct readback_block {
+	GLuint buffer;
+	GLsync filled; /* NULL: it never will be */
+	struct readback_piece pieces[READBACK_PIECES];
+	uint32_t count;
+	size_t bytes; /* in use */
 	struct arrival *arrival;
 };
 
@@ -46,16 +57,17 @@ struct readback {
 
 struct readback_image {
 	uint8_t *data;
-	size_t stride; /* bytes, a multiple of 4 */
-	uint32_t width, height;
+	size_t stride;             /* bytes, a multiple of 4 */
+	const struct tiles *tiles; /* of the picture: those that are marked are read */
 };
 
 /*
- * Asks for all pixels of an image and counts in `arrival` what is missing; ahead: waits for none, as long as there are
- * blocks; else only for blocks enough to go on with. 0, or -EIO with a sentence: all that was under way is lost.
+ * Asks for pixels of an image, counts in `arrival` what is missing, and adds to *bytes how much is asked for; ahead:
+ * waits for none, as long as there are blocks; else only for blocks enough to go on with. 0, or -EIO with a sentence:
+ * all that was under way is lost.
  */
 int readback_ask(struct readback *readback, const struct gl *gl, const struct readback_image *image,
-				 struct arrival *arrival, bool ahead, struct error *error);
+				 struct arrival *arrival, bool ahead, uint64_t *bytes, struct error *error);
 
 /* Until nothing is missing there; what was asked for before is there first. Errors as above. */
 int readback_receive(struct readback *readback, const struct gl *gl, const struct arrival *arrival,

@@ -63,6 +63,31 @@ int gl_shown_copy(struct engine *engine, enum picture_id id, struct error *error
 					  : gl_copy_tiles(engine, picture, picture_of(engine, PICTURE_SHOWN), &shown->rectangles, error);
 }
 
+int gl_open_image(struct engine *engine, struct sheet *sheet, struct error *error)
+{
+	struct executor_gl *executor = gl_of(engine);
+	const enum picture_id id = engine->job.picture;
+	const struct contents *contents = &executor->contents;
+	struct tiles *leaving = &executor->leaving;
+	if (!tiles_begin(leaving, engine->width, engine->height, TILE_WIDTH, TILE_HEIGHT))
+		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", engine->width,
+						 engine->height);
+	contents_open(&executor->contents, engine->params.leave_nothing_out ? 0 : engine->job.held, sheet);
+	for (uint32_t tile = 0; tile < contents->columns * contents->rows; tile++) {
+		const uint64_t number = id == PICTURE_SHOWN ? executor->shown.numbers[tile] : contents_of(contents, id, tile);
+		leaving->marked[tile] = !sheet_has(sheet, tile, number);
+	}
+	return 0;
+}
+
+void gl_close_image(struct engine *engine, const struct sheet *sheet, uint64_t bytes)
+{
+	if (!engine->job.holds)
+		engine->job.holds = engine_new_number(engine);
+	contents_close(&gl_of(engine)->contents, engine->job.holds, sheet);
+	engine->report.bytes_kept += 4 * (uint64_t)engine->width * engine->height - bytes;
+}
+
 void gl_shown_finish(struct gl_shown *shown, const struct gl *gl)
 {
 	tiles_finish(&shown->moving);
