@@ -248,14 +248,50 @@ static int check_words(const struct option_row *row, const char *text, struct er
 	return 0;
 }
 
+/* How many bytes the UTF-8 character there has; 0: it is none (RFC 3629: shortest form, no surrogates). */
+static size_t character_bytes(const unsigned char *c)
+{
+	static const struct {
+		unsigned char first, last, least, most; /* of the first byte; of the second */
+		size_t bytes;
+	} forms[] = {
+		{0x00, 0x7f, 0x00, 0xff, 1}, {0xc2, 0xdf, 0x80, 0xbf, 2}, {0xe0, 0xe0, 0xa0, 0xbf, 3},
+		{0xe1, 0xec, 0x80, 0xbf, 3}, {0xed, 0xed, 0x80, 0x9f, 3}, {0xee, 0xef, 0x80, 0xbf, 3},
+		{0xf0, 0xf0, 0x90, 0xbf, 4}, {0xf1, 0xf3, 0x80, 0xbf, 4}, {0xf4, 0xf4, 0x80, 0x8f, 4},
+	};
+	size_t i = 0;
+	while (i < sizeof(forms) / sizeof(forms[0]) && (c[0] < forms[i].first || c[0] > forms[i].last))
+		i++;
+	if (i == sizeof(forms) / sizeof(forms[0]) || c[1] < forms[i].least || c[1] > forms[i].most)
+		return 0;
+	for (size_t k = 2; k < forms[i].bytes; k++)
+		if ((c[k] & 0xc0) != 0x80)
+			return 0;
+	return forms[i].bytes;
+}
+
+/* What JSON and a terminal take. */
+static int check_characters(const struct option_row *row, const char *text, struct error *error)
+{
+	const unsigned char *c = (const unsigned char *)text;
+	for (size_t bytes; *c; c += bytes) {
+		bytes = character_bytes(c);
+		if (bytes == 0)
+			return error_set(error, -EINVAL, "%s: is no UTF-8 text (byte 0x%02x)", row->name, *c);
+		const unsigned code = bytes == 2 ? (c[0] & 0x1fu) << 6 | (c[1] & 0x3fu) : *c;
+		if (bytes <= 2 && (code < 0x20 || (code >= 0x7f && code < 0xa0)))
+			return error_set(error, -EINVAL, "%s: holds a control character (%u)", row->name, code);
+	}
+	return 0;
+}
+
 static int parse_text(struct settings *settings, const struct option_row *row, const char *text, struct error *error)
 {
 	if (strlen(text) >= row->size)
 		return error_set(error, -EINVAL, "%s: \"%.32s...\" is longer than %zu bytes", row->name, text, row->size - 1);
-	for (const char *c = text; *c; c++)
-		if (iscntrl((unsigned char)*c))
-			return error_set(error, -EINVAL, "%s: holds a control character (%d)", row->name, *c);
-	const int result = check_words(row, text, error);
+	int result = check_characters(row, text, error);
+	if (result == 0)
+		result = check_words(row, text, error);
 	if (result < 0)
 		return result;
 	memset(field_of(settings, row), 0, row->size);

@@ -72,6 +72,11 @@ class Settings(common.Case):
         for name, value in zip(names, values):
             self.assertEqual(self.get(name), value + "\n")
         self.assertIn("stats: ", self.set("stats=" + "x" * 512, status=1))
+        path = self.path("Größe")
+        self.set("stats=" + path)
+        self.assertEqual(self.get("stats"), path + "\n")
+        self.assertIn("stats: is no UTF-8 text", self.set(os.fsdecode(b"stats=/tmp/\xff"), status=1))
+        self.set("stats=", "record=", "tee=", "latency-log=")
 
     def test_get_long(self):
         """Where each value comes from, and what may be set."""

@@ -111,6 +111,16 @@ static void test_refusals(void)
 	expect("gamma", "nan", -EINVAL, "gamma: \"nan\" is not a number");
 	expect("gamma", "0.5", -EINVAL, "gamma: 0.5 is neither 0 (sRGB) nor 1 to 5");
 	expect("snap-threshold", "0.3", -EINVAL, "snap-threshold: 0.3 is not a multiple of 0.25");
+	expect("stats", "/a\x1b[2J", -EINVAL, "stats: holds a control character (27)");
+	expect("stats", "/a\x7f", -EINVAL, "stats: holds a control character (127)");
+	expect("stats", "/a\xc2\x9b", -EINVAL, "stats: holds a control character (155)");
+	expect("stats", "/a\xff", -EINVAL, "stats: is no UTF-8 text (byte 0xff)");
+	expect("stats", "/a\xc3", -EINVAL, "stats: is no UTF-8 text (byte 0xc3)");
+	expect("stats", "/a\xe2\x82(", -EINVAL, "stats: is no UTF-8 text (byte 0xe2)");
+	expect("stats", "/a\xed\xa0\x80", -EINVAL, "stats: is no UTF-8 text (byte 0xed)");
+	expect("stats", "/a\xc0\xaf", -EINVAL, "stats: is no UTF-8 text (byte 0xc0)");
+	expect("stats", "/a\xf4\x90\x80\x80", -EINVAL, "stats: is no UTF-8 text (byte 0xf4)");
+	expect("stats", "/gr\u00f6\u00dfe \u20ac \U0001f600 \u00a0", 0, "");
 	expect("blur", "some", -EINVAL, "blur: \"some\" is none of doubtful, everywhere, off");
 	expect("gles", "maybe", -EINVAL, "gles: \"maybe\" is neither yes nor no");
 	expect("refresh", "0", -EINVAL, "refresh: 0 is below 1 Hz");
