@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "daemon/open_at_once.h"
+#include "daemon/printable.h"
 #include "daemon/version.h"
 
 /* One that a client has ended and waits for. */
@@ -186,8 +187,10 @@ static void *run(void *data)
 
 static json_t *stats_object(const struct recorder_stats *stats, const char *error)
 {
+	char clean[sizeof(((struct error *)NULL)->text)]; /* it may have been cut within a character */
+	printable_copy(clean, sizeof(clean), error);
 	return json_pack("{s:I, s:I, s:I, s:s}", "frames", (json_int_t)stats->frames_written, "dropped",
-					 (json_int_t)stats->frames_dropped, "bytes", (json_int_t)stats->bytes_written, "error", error);
+					 (json_int_t)stats->frames_dropped, "bytes", (json_int_t)stats->bytes_written, "error", clean);
 }
 
 static void on_closed(void *data, uint32_t events)

@@ -270,7 +270,7 @@ static void on_record_stop(struct control *control, const struct request *reques
 	const int result = capture_end(control->capture, on_recorded, control, request->client_id, request->serial, &error);
 	if (result < 0)
 		reply(control, request, result, error.text);
-	else
+	if (result != -EINVAL)
 		empty_setting(control);
 }
 
