@@ -47,8 +47,12 @@ static int acquire(struct render *render, struct presenter_image *image)
 	const int result = acquire_somewhere(render, width, height, image);
 	if (result == -EBUSY)
 		render_expect_flips(render);
-	if (result < 0)
+	/* When it begins and when it ends, since it is tried at each vblank. */
+	if (result < 0 && !render->lacks_picture)
 		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
+	else if (result == 0 && render->lacks_picture)
+		log_info(render->log, "there is memory for pictures again");
+	render->lacks_picture = result < 0;
 	return result;
 }
 
@@ -98,9 +102,10 @@ static int draw(struct render *render, enum engine_show show, double phase, stru
 		return 0;
 	}
 	presenter->impl->release(presenter, image);
-	if (!draw_is_lost(render, result))
-		log_warning(render->log, "%s", error.text);
-	else if (draw_with_another(render, result, &error))
+	if (!draw_is_lost(render, result)) {
+		if (log_limit_allows(&render->draw_limit, clock_now(render->clock)))
+			log_warning(render->log, "%s", error.text);
+	} else if (draw_with_another(render, result, &error))
 		return draw(render, show, phase, image);
 	return result;
 }

@@ -69,8 +69,10 @@ struct render {
 	struct lab *lab; /* NULL: none */
 	struct view view;
 	struct tees tees;
-	bool settings_changed; /* the engine does not know yet */
-	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
+	bool lacks_picture;          /* the presenter had none to draw into, and that was said */
+	struct log_limit draw_limit; /* of the engine's complaints */
+	bool settings_changed;       /* the engine does not know yet */
+	bool redraw;                 /* the view has changed: a picture that stays is drawn anew */
 	bool show_held;        /* `frame`, which the stream still lends, is due once more, unless a newer one comes first */
 	struct stats *stats;   /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */

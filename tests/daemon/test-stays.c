@@ -7,6 +7,8 @@
  */
 #include <errno.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "daemon/present/pictures.h"
 #include "daemon/render.h"
@@ -25,12 +27,18 @@ static struct {
 	struct render render;
 	struct picture picture;
 	unsigned refusals, refused, taken;
-	uint64_t drawing_ns; /* that a picture takes */
+	unsigned full, lacks; /* so often there is no picture to draw into; there was none */
+	uint64_t drawing_ns;  /* that a picture takes */
 } world;
 
 static int acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
 {
 	clock_wait_until(&world.clock.clock, clock_now(&world.clock.clock) + world.drawing_ns);
+	if (world.full > 0) {
+		world.full--;
+		world.lacks++;
+		return -EBUSY;
+	}
 	return pictures_acquire(presenter, width, height, image);
 }
 
@@ -185,11 +193,40 @@ static void test_a_presenter_that_takes_nothing(void)
 	world_finish();
 }
 
+static unsigned count_logged(const char *text)
+{
+	static char content[4096];
+	unsigned count = 0;
+	const ssize_t got = pread(world.log.fd, content, sizeof(content) - 1, 0);
+	content[got > 0 ? got : 0] = 0;
+	for (const char *at = content; (at = strstr(at, text)) != NULL; at++)
+		count++;
+	return count;
+}
+
+/* Tried at each vblank, and said when it begins and when it ends. */
+static void test_no_picture_to_draw_into(void)
+{
+	world_init();
+	world.log = (struct log){.fd = memfd_create("log", MFD_CLOEXEC), .level = LOG_LEVEL_INFO};
+	show_boosted();
+	world.full = 20;
+	run(200);
+	CHECK_INT(world.lacks, 20);
+	CHECK_INT(world.taken, 1);
+	CHECK(world.render.paused && world.render.front_plain);
+	CHECK_INT(count_logged("no memory for a picture of 64x64"), 1);
+	CHECK_INT(count_logged("there is memory for pictures again"), 1);
+	close(world.log.fd);
+	world_finish();
+}
+
 int main(void)
 {
 	RUN(test_the_view_changes_while_nothing_moves);
 	RUN(test_a_slow_picture);
 	RUN(test_a_boosted_picture_does_not_stay);
 	RUN(test_a_presenter_that_takes_nothing);
+	RUN(test_no_picture_to_draw_into);
 	return test_result();
 }
