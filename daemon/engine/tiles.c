@@ -133,17 +133,18 @@ size_t tiles_most_numbers(const struct tiles *tiles)
 	return 12 * (size_t)tiles->rows * ((tiles->columns + 1) / 2);
 }
 
-static float *write_rectangle(float *numbers, float left, float top, float right, float bottom)
+static uint16_t *write_rectangle(uint16_t *numbers, uint32_t left, uint32_t top, uint32_t right, uint32_t bottom)
 {
-	const float corners[12] = {left, top, right, top, left, bottom, left, bottom, right, top, right, bottom};
+	const uint16_t l = (uint16_t)left, t = (uint16_t)top, r = (uint16_t)right, b = (uint16_t)bottom;
+	const uint16_t corners[12] = {l, t, r, t, l, b, l, b, r, t, r, b};
 	memcpy(numbers, corners, sizeof(corners));
 	return numbers + 12;
 }
 
-size_t tiles_write(const struct tiles *tiles, float *numbers)
+size_t tiles_write(const struct tiles *tiles, uint16_t *numbers)
 {
-	const float width = (float)tiles->tile_width, height = (float)tiles->tile_height;
-	float *at = numbers;
+	const uint32_t width = tiles->tile_width, height = tiles->tile_height;
+	uint16_t *at = numbers;
 	for (uint32_t j = 0; j < tiles->rows; j++)
 		for (uint32_t i = 0; i < tiles->columns; i++) {
 			const uint8_t *row = tiles->marked + j * tiles->columns;
@@ -152,8 +153,7 @@ size_t tiles_write(const struct tiles *tiles, float *numbers)
 			uint32_t first = i;
 			while (i + 1 < tiles->columns && row[i + 1])
 				i++;
-			at = write_rectangle(at, width * (float)first, height * (float)j, width * (float)(i + 1),
-								 height * (float)(j + 1));
+			at = write_rectangle(at, width * first, height * j, width * (i + 1), height * (j + 1));
 		}
 	return (size_t)(at - numbers);
 }

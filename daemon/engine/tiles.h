@@ -50,7 +50,7 @@ bool tiles_next_bounds(const struct tiles *tiles, uint32_t gap, struct bounds *b
  * Writes the marked tiles as triangles, 12 numbers (x, y of 6 corners, pixels) a row of neighbours; returns how many
  * numbers. `numbers` has room for tiles_most_numbers().
  */
-size_t tiles_write(const struct tiles *tiles, float *numbers);
+size_t tiles_write(const struct tiles *tiles, uint16_t *numbers);
 size_t tiles_most_numbers(const struct tiles *tiles);
 
 #endif

@@ -51,14 +51,14 @@ struct warp_mesh {
 	uint32_t capacity;   /* indices */
 	uint64_t begun;      /* counts warp_mesh_begin(): the vertices are new */
 	uint64_t sorted;     /* counts the sorts: the lists are new */
-	/* What warp_mesh_sort() and warp_mesh_sort_doubtful() found; `lists` holds one or the other. */
+	/* What warp_mesh_sort() and warp_mesh_sort_doubtful() found; `lists` holds one or the other, in this order. */
 	struct warp_list plain;       /* neither torn nor over each other */
 	struct warp_list torn;        /* torn, not over each other */
 	struct warp_list folded;      /* perhaps over each other, in drawing order */
 	struct warp_list folded_torn; /* these among them that are torn; if `keep_order` they are in `folded` too */
 	bool test_all; /* set by the caller: sorts take all triangles for such that may lie over each other */
 	bool keep_order;
-	bool too_wild; /* drawing would cost too much; the lists are not filled */
+	bool too_wild;             /* drawing would cost too much; the lists are not filled */
 	struct warp_list doubtful; /* within the tiles of `low` */
 };
 

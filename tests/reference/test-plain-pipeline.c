@@ -77,9 +77,12 @@ static void fold_all(struct warp_mesh *mesh, float phase, bool has_depth)
 		}
 	tiles_mark_all(&mesh->folds);
 	mesh->plain = mesh->torn = (struct warp_list){0, 0};
-	mesh->folded = mesh->folded_torn = (struct warp_list){0, count};
+	/* In their order, and once more as torn ones. */
+	memcpy(mesh->lists + count, mesh->lists, count * sizeof(*mesh->lists));
+	mesh->folded = (struct warp_list){0, count};
+	mesh->folded_torn = (struct warp_list){count, count};
 	mesh->keep_order = true;
-	mesh->list_count = count;
+	mesh->list_count = 2 * count;
 	mesh->sorted++;
 }
 

@@ -16,9 +16,8 @@ struct analysis {
 		GLenum internal;
 		uint32_t width, height;
 	} motion, depth;
-	GLuint job, found;  /* buffers: what is asked for, what comes back */
-	size_t found_bytes; /* of `found` */
-	void *nothing;      /* as many zero bytes as `found` has before the vertices, */
+	GLuint job;    /* buffer: what is asked for; what comes back takes the buffer of the warp's vertices */
+	void *nothing; /* as many zero bytes as that has before the vertices, */
 	size_t nothing_bytes;
 };
 

@@ -19,6 +19,8 @@ struct dynamic {
 	size_t bytes;
 };
 
+/* Binds it to the target, with room for so many bytes; of `most` below. What was in it is lost if that is more. */
+void dynamic_reserve(struct dynamic *buffer, const struct gl *gl, GLenum target, size_t bytes, size_t most);
 /*
  * Binds it to the target and gives memory for its content, to be written, not read. `most`: bytes that it can ever need
  * for pictures of that size. NULL with a sentence.

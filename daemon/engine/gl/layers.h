@@ -22,9 +22,8 @@ struct gl_layers {
 	struct tile_buffer tiles;
 	/* What they are made with, as it was when the frame began: vertices and settings change before they are asked for.
 	 */
-	struct warp_buffers buffers;
-	struct warp_list list; /* triangles with a blur weight */
-	unsigned variant;      /* of the program */
+	struct warp_kept triangles; /* with a blur weight */
+	unsigned variant;           /* of the program */
 	bool real_differs;
 	uint32_t level; /* of the pyramid */
 	float last_phase, count, boost, gamma;

@@ -26,8 +26,8 @@ struct shader_job {
 	int32_t band[4];
 };
 
-/* Rows of the picture, about. */
-#define BAND_ROWS 64u
+/* Rows of the picture, about; more where a cell has more. */
+#define BAND_ROWS 32u
 
 /* Some rows of vertices and the rows of the planes that these are made of. */
 struct band {
@@ -59,7 +59,6 @@ void analysis_finish(struct analysis *analysis, const struct gl *gl)
 	gl->DeleteTextures(1, &analysis->motion.texture);
 	gl->DeleteTextures(1, &analysis->depth.texture);
 	gl->DeleteBuffers(1, &analysis->job);
-	gl->DeleteBuffers(1, &analysis->found);
 	free(analysis->nothing);
 	*analysis = (struct analysis){0};
 }
@@ -72,7 +71,7 @@ static uint64_t plane_bytes(const struct analysis_plane *plane)
 
 uint64_t analysis_bytes(const struct analysis *analysis)
 {
-	return plane_bytes(&analysis->motion) + plane_bytes(&analysis->depth) + analysis->found_bytes +
+	return plane_bytes(&analysis->motion) + plane_bytes(&analysis->depth) +
 		   (analysis->job ? sizeof(struct shader_job) : 0);
 }
 
@@ -210,18 +209,16 @@ static int reserve_nothing(struct analysis *analysis, size_t bytes, struct error
 static int make_room(struct engine *engine, const struct plan_job *job, struct error *error)
 {
 	struct analysis *analysis = &gl_of(engine)->analysis;
+	struct warp_buffers *buffers = &gl_of(engine)->buffers;
 	const struct gl *gl = table_of(engine);
 	const size_t bytes = found_bytes(job);
 	int result = reserve_nothing(analysis, 4 * first_vertex(job), error);
 	if (result < 0)
 		return result;
-	if (!analysis->found)
-		gl->GenBuffers(1, &analysis->found);
-	gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, analysis->found);
-	if (bytes > analysis->found_bytes) {
-		gl->BufferData(GL_SHADER_STORAGE_BUFFER, (GLsizeiptr)bytes, NULL, GL_DYNAMIC_READ);
-		analysis->found_bytes = bytes;
-	}
+	/* The vertices of the frame before, which nothing more is drawn of, make room for those to be found. */
+	buffers->begun = 0;
+	dynamic_reserve(&buffers->vertices, gl, GL_SHADER_STORAGE_BUFFER, bytes, bytes);
+	gl->BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, buffers->vertices.id);
 	gl->BufferSubData(GL_SHADER_STORAGE_BUFFER, 0, (GLsizeiptr)(4 * first_vertex(job)), analysis->nothing);
 	return 0;
 }
@@ -260,7 +257,7 @@ static struct band_rows rows_of(const struct engine *engine, const struct plan_j
 /* Vertex row i is that of the row of cells i - 1, whose last pixels look at the ones below them. */
 static struct band band_at(const struct engine *engine, const struct plan_job *job, uint32_t row)
 {
-	const uint32_t cells = BAND_ROWS / job->cell, bottom = job->height - 1;
+	const uint32_t cells = job->cell < BAND_ROWS ? BAND_ROWS / job->cell : 1, bottom = job->height - 1;
 	struct band band = {.first = row, .count = job->rows - row < cells ? job->rows - row : cells};
 	uint32_t first = row ? (row - 1) * job->cell : 0, last = (row + band.count - 1) * job->cell;
 	first = first < bottom ? first : bottom;

@@ -18,13 +18,13 @@ void gl_layers_finish(struct gl_layers *layers, const struct gl *gl)
 {
 	target_finish(&layers->kept, gl);
 	tile_buffer_finish(&layers->tiles, gl);
-	warp_buffers_finish(&layers->buffers, gl);
+	warp_kept_finish(&layers->triangles, gl);
 }
 
 uint64_t gl_layers_bytes(const struct gl_layers *layers)
 {
-	return target_bytes(&layers->kept) + layers->tiles.vertices.bytes + layers->buffers.vertices.bytes +
-		   layers->buffers.indices.bytes;
+	return target_bytes(&layers->kept) + layers->tiles.vertices.bytes + layers->triangles.displacements.bytes +
+		   layers->triangles.indices.bytes;
 }
 
 int gl_copy_tiles(struct engine *engine, const struct target *from, const struct target *to,
@@ -84,7 +84,7 @@ static int draw(struct engine *engine, enum picture_id id, struct error *error)
 		gl->BindVertexArray(executor->no_attributes);
 		gl->DrawArrays(GL_TRIANGLES, 0, 6);
 	} else {
-		warp_buffers_draw(&executor->layers.buffers, gl, executor->layers.list);
+		warp_kept_draw(&executor->layers.triangles, gl);
 	}
 	return 0;
 }
@@ -116,7 +116,6 @@ static unsigned variant_of(const struct engine *engine)
 
 static void take_settings(const struct engine *engine, struct gl_layers *layers)
 {
-	layers->list = engine->mesh.doubtful;
 	layers->variant = variant_of(engine);
 	layers->real_differs = !engine->params.no_compensation;
 	layers->level = engine->params.blur_level;
@@ -131,7 +130,8 @@ static int load(struct engine *engine, struct gl_layers *layers, struct error *e
 	const struct gl *gl = table_of(engine);
 	if (layers->variant & VARIANT_WEIGHT_ONE)
 		return 0;
-	int result = warp_buffers_update(&layers->buffers, gl, &engine->mesh, NULL, NULL, &engine->report.bytes_up, error);
+	int result = warp_kept_update(&layers->triangles, &gl_of(engine)->buffers, gl, &engine->mesh, engine->mesh.doubtful,
+								  engine->bend.bent > 0, &engine->report.bytes_up, error);
 	return result == 0 ? tile_buffer_load(&layers->tiles, gl, &engine->mesh.low, error) : result;
 }
 

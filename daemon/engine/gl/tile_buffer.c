@@ -13,7 +13,7 @@ static void make_array(struct tile_buffer *buffer, const struct gl *gl)
 	gl->GenBuffers(1, &buffer->vertices.id);
 	gl->BindVertexArray(buffer->array);
 	gl->BindBuffer(GL_ARRAY_BUFFER, buffer->vertices.id);
-	gl->VertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_FLOAT, GL_FALSE, 0, NULL);
+	gl->VertexAttribPointer(ATTRIBUTE_POSITION, 2, GL_UNSIGNED_SHORT, GL_FALSE, 0, NULL);
 	gl->EnableVertexAttribArray(ATTRIBUTE_POSITION);
 }
 
@@ -22,8 +22,8 @@ int tile_buffer_load(struct tile_buffer *buffer, const struct gl *gl, const stru
 	if (!buffer->array)
 		make_array(buffer, gl);
 	buffer->corners = 0;
-	const size_t most = tiles_most_numbers(tiles) * sizeof(float);
-	float *to = dynamic_map(&buffer->vertices, gl, GL_ARRAY_BUFFER, most, most, error);
+	const size_t most = tiles_most_numbers(tiles) * sizeof(uint16_t);
+	uint16_t *to = dynamic_map(&buffer->vertices, gl, GL_ARRAY_BUFFER, most, most, error);
 	if (!to)
 		return -ENOMEM;
 	const size_t numbers = tiles_write(tiles, to);
