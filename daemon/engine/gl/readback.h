@@ -22,8 +22,7 @@
 #define READBACK_BLOCK ((size_t)512 * 1024)
 /* Blocks for pictures that somebody waits for. */
 #define READBACK_BLOCKS 4u
-/* And at most, with others under way: two of 3840x2160. Of larger ones some rows are waited for when they are asked
- * for. */
+/* And at most, with others under way: two of 3840x2160; of larger ones some rows are waited for by whoever asks. */
 #define READBACK_MOST 128u
 
 /* Rectangles of a block. */
