@@ -92,7 +92,8 @@ static const struct engine_context brought = {.name = "test", .enter = enter, .r
 
 static struct engine *make(const char *method, enum engine_context_kind kind)
 {
-	const struct engine_params params = {.method = method, .context = kind, .brought = &brought};
+	const struct engine_params params = {
+		.method = method, .context = kind, .brought = &brought, .buffer_software = true};
 	struct error error = {""};
 	struct engine *engine = engine_create(&params, &error);
 	if (!engine)
@@ -277,6 +278,40 @@ static void test_unfinished(void)
 	engine_destroy(&engine);
 }
 
+/* The context goes with pictures on their way to memory, so that none is current: they are lost, or were there before.
+ */
+static void test_lost_under_way(void)
+{
+	static uint8_t out[3][BYTES], untouched[BYTES];
+	const struct engine_begin_params begin = {.n = 1};
+	const struct engine_request request = {ENGINE_SHOW_PLAIN, 0.0};
+	struct picture picture;
+	struct error error = {""};
+	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, 0);
+	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 5);
+	for (int dropped = 0; dropped < 2; dropped++) {
+		struct engine *engine = make("hold", ENGINE_CONTEXT_EGL_SURFACELESS);
+		struct engine_image image = {.data = out[0], .stride = (size_t)4 * WIDTH, .unfinished = true};
+		CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
+		CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+		CHECK_INT(engine_finish(engine, &error), 0);
+		image.data = out[1 + dropped];
+		CHECK_INT(engine_render(engine, &request, &image, &error), 0);
+		engine_leave(engine);
+		gl.lost = true;
+		if (dropped)
+			engine_drop(engine);
+		CHECK_INT(engine_take(engine, &image, &error), dropped ? -ENOENT : 0);
+		CHECK(dropped || (image.data == out[0] && memcmp(out[0], untouched, BYTES) != 0));
+		CHECK_INT(engine_take(engine, &image, &error), dropped ? -ENOENT : -EIO);
+		CHECK(dropped || (image.data == out[1] && strstr(error.text, "lost")));
+		engine_destroy(&engine);
+		gl.lost = false;
+		CHECK(memcmp(out[1 + dropped], untouched, BYTES) == 0);
+	}
+	picture_finish(&picture);
+}
+
 /* One that was not asked for, that of a CPU renderer for AUTO, and a lost one. */
 static void test_not_taken(void)
 {
@@ -320,6 +355,7 @@ int main(void)
 	RUN(test_kept);
 	RUN(test_textures_in_turn);
 	RUN(test_unfinished);
+	RUN(test_lost_under_way);
 	RUN(test_not_taken);
 	return test_result();
 }
