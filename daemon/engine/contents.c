@@ -71,8 +71,10 @@ int contents_begin(struct contents *contents, uint32_t width, uint32_t height, b
 	return 0;
 }
 
-void contents_layer(struct contents *contents, const struct tiles *low)
+void contents_layer(struct contents *contents, const struct tiles *low, uint64_t real, uint64_t between)
 {
+	contents->real = real;
+	contents->between = between;
 	memset(contents->layered, 0, (size_t)contents->columns * contents->rows);
 	for (uint32_t i = 0; i < low->columns * low->rows; i++) {
 		const uint32_t x = i % low->columns * low->tile_width, y = i / low->columns * low->tile_height;

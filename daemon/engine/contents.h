@@ -40,6 +40,7 @@ struct contents {
 	uint64_t now;           /* of the tiles that differ in the frame begun last */
 	uint64_t *tiles;        /* by tile of ORIGINAL, row by row */
 	uint8_t *layered;       /* by tile: REAL and BETWEEN, if there are such, differ from ORIGINAL */
+	uint64_t real, between; /* numbers of all such tiles of theirs, in the frame begun last */
 	struct contents_image images[CONTENTS_IMAGES];
 	uint64_t makes;
 	size_t capacity; /* tiles */
@@ -65,8 +66,8 @@ uint64_t contents_bytes(const struct contents *contents);
 int contents_begin(struct contents *contents, uint32_t width, uint32_t height, bool ui, uint64_t now, bool original,
 				   struct error *error);
 
-/* REAL and BETWEEN differ from ORIGINAL where `low` is marked, and nowhere else. */
-void contents_layer(struct contents *contents, const struct tiles *low);
+/* REAL and BETWEEN differ from ORIGINAL where `low` is marked, and nowhere else; two numbers never used. */
+void contents_layer(struct contents *contents, const struct tiles *low, uint64_t real, uint64_t between);
 
 /* The tile of ORIGINAL, or of the UI over it, is another than in the frame before. Any thread. */
 static inline void contents_change(struct contents *contents, uint32_t tile)
@@ -82,9 +83,11 @@ static inline bool contents_changed(const struct contents *contents, uint32_t ti
 /* The number of a tile of a picture with the UI over it; 0: it has none. */
 static inline uint64_t contents_of(const struct contents *contents, enum picture_id id, uint32_t tile)
 {
-	if (id == PICTURE_ORIGINAL)
+	if (id != PICTURE_ORIGINAL && id != PICTURE_REAL && id != PICTURE_BETWEEN)
+		return 0;
+	if (id == PICTURE_ORIGINAL || !contents->layered[tile])
 		return contents->tiles[tile];
-	return (id == PICTURE_REAL || id == PICTURE_BETWEEN) && !contents->layered[tile] ? contents->tiles[tile] : 0;
+	return id == PICTURE_REAL ? contents->real : contents->between;
 }
 
 /*

@@ -103,7 +103,8 @@ static int run(struct engine *engine, struct error *error)
 		result = reserve(&executor->weights, engine->width, engine->height, error);
 	if (result < 0)
 		return result;
-	contents_layer(&executor->contents, &engine->mesh.low);
+	const uint64_t real = engine_new_number(engine);
+	contents_layer(&executor->contents, &engine->mesh.low, real, engine_new_number(engine));
 	uint32_t items = (executor->layers.count + BLOCKS_OF_ITEM - 1) / BLOCKS_OF_ITEM;
 	if (!everywhere) {
 		uint32_t triangles = engine->mesh.doubtful.count / 3;

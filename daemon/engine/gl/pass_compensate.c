@@ -145,7 +145,8 @@ static int run(struct engine *engine, struct error *error)
 	take_settings(engine, layers);
 	if (layers->variant & VARIANT_WEIGHT_ONE)
 		tiles_mark_all(&engine->mesh.low);
-	contents_layer(&gl_of(engine)->contents, &engine->mesh.low);
+	const uint64_t real = engine_new_number(engine);
+	contents_layer(&gl_of(engine)->contents, &engine->mesh.low, real, engine_new_number(engine));
 	if (result == 0)
 		result = target_resize(&layers->kept, table_of(engine), engine->width, engine->height, error);
 	if (result == 0)
