@@ -7,6 +7,7 @@ usage: make_pictures.py BUILD OUT [NAME...]    BUILD: a build folder; OUT: docs/
   mistake-KIND.png  an in-between, and one row of the picture over time, with a mistake in the stream
 """
 import html
+import itertools
 import os
 import shutil
 import struct
@@ -35,12 +36,14 @@ def run(*arguments):
 
 def unfilter(kind, row, above):
     """A row of a PNG with its filter taken off, in place; three bytes a pixel."""
+    if kind == 1:
+        for channel in range(3):
+            row[channel::3] = bytes(map((255).__and__, itertools.accumulate(row[channel::3])))
+        return
     for i, value in enumerate(row):
         left, corner = (row[i - 3], above[i - 3]) if i >= 3 else (0, 0)
         up = above[i]
-        if kind == 1:
-            value += left
-        elif kind == 2:
+        if kind == 2:
             value += up
         elif kind == 3:
             value += (left + up) // 2

@@ -4,8 +4,11 @@
 /*
  * A plan made with true damage has the bits of one made without, frame after frame, whatever came before; and one made
  * with false damage is sane, and forgotten with the next frame that says nothing.
+ *
+ *   test-plan-damage [SEEDS]     24 sequences of frames by default
  */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "daemon/engine/pool.h"
@@ -13,7 +16,6 @@
 #include "tests/test.h"
 
 #define FRAMES 150u
-#define SEEDS 24u
 
 struct sequence {
 	uint32_t random;
@@ -28,6 +30,7 @@ struct sequence {
 };
 
 static struct pool *pool;
+static uint32_t seeds = 24;
 
 static uint32_t pick(struct sequence *sequence, uint32_t count)
 {
@@ -200,7 +203,7 @@ static void end(struct sequence *sequence)
 static void test_true_damage(void)
 {
 	static struct sequence sequence;
-	for (uint32_t seed = 1; seed <= SEEDS; seed++) {
+	for (uint32_t seed = 1; seed <= seeds; seed++) {
 		begin(&sequence, seed);
 		for (uint32_t i = 0; i < FRAMES; i++)
 			next(&sequence, seed);
@@ -213,7 +216,7 @@ static void test_true_damage(void)
 static void test_false_damage(void)
 {
 	static struct sequence sequence;
-	for (uint32_t seed = 1; seed <= SEEDS; seed++) {
+	for (uint32_t seed = 1; seed <= seeds; seed++) {
 		begin(&sequence, seed);
 		for (uint32_t i = 0; i < FRAMES; i++) {
 			struct pursuit_frame_header *header = &sequence.fixture.frame.header;
@@ -302,8 +305,9 @@ static void test_rows_are_left_out(void)
 	fixture_finish(&fixture);
 }
 
-int main(void)
+int main(int argc, char **argv)
 {
+	seeds = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : seeds;
 	pool = pool_create(3);
 	RUN(test_true_damage);
 	RUN(test_false_damage);
