@@ -41,6 +41,7 @@ struct display {
 		struct settings settings;
 		struct slot *slot; /* made for them, not in use yet; NULL: it needs none */
 		bool replaced;     /* the one in use was made for them, in place of another */
+		bool changes;      /* they concern presenters at all */
 	} prepared;
 	struct loop_source *presenter_source, *wake_source, *retry_source;
 	int wake_fd, retry_fd;
@@ -333,12 +334,13 @@ static bool settle(struct display *display)
 	return true;
 }
 
-static bool concerns(const struct presenter_impl *impl, const struct settings *a, const struct settings *b)
+/* Presenters of this kind. */
+static bool concerns(enum presenter_kind kind, const struct settings *a, const struct settings *b)
 {
 	if (a->refresh_numerator != b->refresh_numerator || a->refresh_denominator != b->refresh_denominator ||
 		a->spin_us != b->spin_us)
 		return true;
-	switch (impl->kind) {
+	switch (kind) {
 	case PRESENTER_MEMORY:
 		return false;
 	case PRESENTER_WINDOW:
@@ -350,6 +352,12 @@ static bool concerns(const struct presenter_impl *impl, const struct settings *a
 			   strcmp(a->kms_device, b->kms_device) != 0 || may_share_gl(a) != may_share_gl(b);
 	}
 	return false;
+}
+
+/* Any presenter. */
+static bool concerns_any(const struct settings *a, const struct settings *b)
+{
+	return strcmp(a->present, b->present) != 0 || concerns(PRESENTER_WINDOW, a, b) || concerns(PRESENTER_DEVICE, a, b);
 }
 
 /* The one in use goes first; if no other can be made it comes back. Both with settings of their own. */
@@ -410,13 +418,17 @@ int display_prepare(struct display *display, const struct settings *fresh, struc
 	int result = 0;
 	display->prepared.slot = NULL;
 	display->prepared.replaced = false;
+	display->prepared.changes = concerns_any(&display->settings, fresh);
+	/* Whatever state it is in: others' settings can be taken over. */
+	if (!display->prepared.changes)
+		return 0;
 	if (!settle(display))
 		return error_set(error, -ETIMEDOUT, "present: the presenter before this one is in use still");
 	display->prepared.settings = *fresh;
 	if (!display->now || strcmp(fresh->present, display->settings.present) != 0)
 		result = prepare_another(display, fresh, error);
 	if (result == 0 && display->now && !display->prepared.slot &&
-		concerns(display->now->presenter->impl, &display->settings, fresh))
+		concerns(display->now->presenter->impl->kind, &display->settings, fresh))
 		result = prepare_same(display, fresh, error);
 	return result;
 }
@@ -424,6 +436,8 @@ int display_prepare(struct display *display, const struct settings *fresh, struc
 void display_commit(struct display *display)
 {
 	struct slot *slot = display->prepared.slot;
+	if (!display->prepared.changes)
+		return;
 	display->settings = display->prepared.settings;
 	display->prepared.slot = NULL;
 	if (slot && display->now) {

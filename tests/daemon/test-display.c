@@ -241,6 +241,60 @@ static void test_none_works(void)
 	fixture_finish(&fixture);
 }
 
+/* While none works, or the user has not let go of the one before: settings of others are nothing to wait for. */
+static void test_others_settings_while_none_works(void)
+{
+	struct fixture fixture;
+	struct error error = {""};
+	fixture_init(&fixture);
+	fixture.display = create(&fixture, &error);
+	fake.failures = 1;
+	fake.params.lost(fake.params.data, "unplugged");
+	step_until_changes(&fixture, 2);
+	struct settings fresh = fixture.settings;
+	for (unsigned i = 0; i < 2; i++) {
+		const unsigned attempts = fake.attempts;
+		snprintf(fresh.record, sizeof(fresh.record), "%u", i);
+		CHECK_INT(display_prepare(fixture.display, &fresh, &error), 0);
+		display_commit(fixture.display);
+		CHECK_INT(display_prepare(fixture.display, &fresh, &error), 0);
+		display_abandon(fixture.display);
+		CHECK_INT(fake.attempts, attempts);
+		display_let_go(fixture.display);
+		step(&fixture, 0);
+	}
+	/* Its own are tried. */
+	snprintf(fresh.monitor, sizeof(fresh.monitor), "another");
+	fresh.refresh_numerator = 60;
+	CHECK(display_prepare(fixture.display, &fresh, &error) < 0);
+	step_until_changes(&fixture, 3);
+	CHECK(fixture.user.presenter == &fake.presenter);
+	fixture_finish(&fixture);
+}
+
+/* Settings that are changed again and again do not keep one that is better from being looked for. */
+static void test_better_one_among_changes(void)
+{
+	struct fixture fixture;
+	struct error error;
+	fixture_init(&fixture);
+	fake.can_be_better = true;
+	fake.better_in = 1;
+	fixture.display = create(&fixture, &error);
+	struct settings fresh = fixture.settings;
+	for (unsigned i = 0; i < 200 && fixture.user.changes < 2; i++) {
+		snprintf(fresh.record, sizeof(fresh.record), "%u", i);
+		CHECK_INT(display_prepare(fixture.display, &fresh, &error), 0);
+		display_commit(fixture.display);
+		step(&fixture, 20);
+	}
+	CHECK_INT(fixture.user.changes, 2);
+	CHECK(fixture.user.presenter == &fake.better);
+	display_let_go(fixture.display);
+	step(&fixture, 10);
+	fixture_finish(&fixture);
+}
+
 /* One that stands before it in the list works again: it takes over, without a moment that nobody could show in. */
 static void test_better_one(void)
 {
@@ -357,6 +411,8 @@ int main(void)
 	RUN(test_destroyed_while_lost);
 	RUN(test_failed_one_was_lost);
 	RUN(test_none_works);
+	RUN(test_others_settings_while_none_works);
+	RUN(test_better_one_among_changes);
 	RUN(test_better_one);
 	RUN(test_better_one_lost);
 	RUN(test_other_settings);
