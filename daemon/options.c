@@ -111,7 +111,8 @@ static const struct option_row rows[] = {
 		   "When the client that is shown closes its stream, ends or is killed: its last picture stays, or black."),
 	TEXT(tee, "tee", OPTION_OUTPUT, "",
 		 "Record what is shown, each vblank once, into this YUV4MPEG2 file, and the times beside it in FILE.csv; or, "
-		 "with a name like 'out/%06d.png', into an image each, and the times in out/times.csv."),
+		 "with a name like 'out/%06d.png', into an image each, numbered on from those that are there, and the times in "
+		 "out/times.csv."),
 	TEXT(monitor, "monitor", OPTION_OUTPUT, "",
 		 "glfw: name of the monitor, or its number from 0, for full screen and for the rate; empty: the primary one."),
 	FLAG(fullscreen, "fullscreen", OPTION_OUTPUT, "no",

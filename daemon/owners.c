@@ -14,6 +14,7 @@
 #include "daemon/lab/latency_log.h"
 #include "daemon/open_at_once.h"
 #include "daemon/seccomp.h"
+#include "daemon/tee.h"
 #include "daemon/version.h"
 
 /* ---- what lies where files are to be written ---- */
@@ -26,10 +27,10 @@ static bool is_new(const char *path, const char *before)
 int owners_keep_files(const struct settings *now, const struct settings *fresh, const struct log *log,
 					  struct aside *asides, struct error *error)
 {
-	const bool is_video = is_new(fresh->tee, now ? now->tee : NULL) && !strchr(fresh->tee, '%');
-	char times[sizeof(fresh->tee) + 8];
+	const bool is_tee = is_new(fresh->tee, now ? now->tee : NULL), is_video = is_tee && !strchr(fresh->tee, '%');
+	char times[TEE_TIMES_BYTES];
 	int result = 0;
-	snprintf(times, sizeof(times), "%s.csv", fresh->tee);
+	tee_times_path(fresh->tee, times);
 	const struct {
 		const char *option, *path;
 		bool is_new;
@@ -37,7 +38,7 @@ int owners_keep_files(const struct settings *now, const struct settings *fresh, 
 		{"latency-log", fresh->lab.latency_log, is_new(fresh->lab.latency_log, now ? now->lab.latency_log : NULL)},
 		{"record", fresh->record, is_new(fresh->record, now ? now->record : NULL)},
 		{"tee", fresh->tee, is_video},
-		{"tee", times, is_video},
+		{"tee", times, is_tee},
 	};
 	for (unsigned i = 0; i < OWNERS_FILES && result == 0; i++)
 		if (files[i].is_new)

@@ -45,17 +45,32 @@ struct tee {
 	} queue[QUEUED];
 	uint32_t first, count;
 	uint64_t written, dropped, other_size;
-	struct y4m *video; /* the thread's */
+	uint64_t first_number; /* the thread's: of its images */
+	struct y4m *video;     /* the thread's */
 };
 
 /* ---- the thread ---- */
 
-static int write_image(const struct tee *tee, const struct tee_picture *picture, struct error *error)
+/* Images of before stay. */
+static int number_on(struct tee *tee, struct error *error)
+{
+	uint64_t *numbers;
+	size_t count;
+	const int result = pattern_list(tee->path, &numbers, &count, error);
+	if (result == 0 && count > 0)
+		tee->first_number = numbers[count - 1] + 1;
+	free(numbers);
+	return result;
+}
+
+static int write_image(struct tee *tee, const struct tee_picture *picture, struct error *error)
 {
 	char name[PATTERN_MAX_PATH];
-	if (!pattern_name(tee->path, tee->written, name))
-		return error_set(error, -ENAMETOOLONG, "%s: the name of frame %" PRIu64 " is too long", tee->path,
-						 tee->written);
+	if (tee->written == 0 && number_on(tee, error) < 0)
+		return -EIO;
+	const uint64_t number = tee->first_number + tee->written;
+	if (!pattern_name(tee->path, number, name))
+		return error_set(error, -ENAMETOOLONG, "%s: the name of frame %" PRIu64 " is too long", tee->path, number);
 	const int result =
 		image_write_png(name, picture->data, (size_t)tee->width * 4, tee->width, tee->height, false, error);
 	if (result < 0)
@@ -84,9 +99,10 @@ static int write_frame(struct tee *tee, const struct tee_picture *picture, const
 	static const char *const shown[] = {"picture", "standby", "kept"};
 	const int result = tee->images ? write_image(tee, picture, error) : write_video(tee, picture, error);
 	if (result == 0)
-		fprintf(tee->times, "%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%s,%" PRIu64 ",%s\n", flip->vblank,
-				flip->sequence, flip->target_ns, flip->flip_ns, presenter_time_source_name(flip->time_source),
-				flip->serial, shown[flip->shown]);
+		fprintf(tee->times, "%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%" PRIu64 ",%s,%" PRIu64 ",%s,%" PRIu64 "\n",
+				flip->vblank, flip->sequence, flip->target_ns, flip->flip_ns,
+				presenter_time_source_name(flip->time_source), flip->serial, shown[flip->shown],
+				tee->first_number + tee->written);
 	return result;
 }
 
@@ -205,15 +221,20 @@ void tee_flip(struct tee *tee, const struct presenter_flip *flip, const struct g
 
 /* ---- life ---- */
 
+void tee_times_path(const char *path, char times[TEE_TIMES_BYTES])
+{
+	const char *slash = strrchr(path, '/');
+	if (strchr(path, '%'))
+		snprintf(times, TEE_TIMES_BYTES, "%.*stimes.csv", slash ? (int)(slash + 1 - path) : 0, path);
+	else
+		snprintf(times, TEE_TIMES_BYTES, "%s.csv", path);
+}
+
 /* 0 or a negative errno with a sentence. */
 static int open_times(struct tee *tee, struct error *error)
 {
-	char times[sizeof(tee->path) + 16];
-	const char *slash = strrchr(tee->path, '/');
-	if (tee->images)
-		snprintf(times, sizeof(times), "%.*stimes.csv", slash ? (int)(slash + 1 - tee->path) : 0, tee->path);
-	else
-		snprintf(times, sizeof(times), "%s.csv", tee->path);
+	char times[TEE_TIMES_BYTES];
+	tee_times_path(tee->path, times);
 	const int fd = open_at_once("tee", times, O_TRUNC, error);
 	if (fd < 0)
 		return fd;
@@ -238,7 +259,7 @@ struct tee *tee_create(const struct tee_params *params, struct error *error)
 		free(tee);
 		return NULL;
 	}
-	fprintf(tee->times, "vblank,sequence,target_ns,flip_ns,time_source,picture,shown\n");
+	fprintf(tee->times, "vblank,sequence,target_ns,flip_ns,time_source,picture,shown,number\n");
 	pthread_mutex_init(&tee->lock, NULL);
 	pthread_cond_init(&tee->wake, NULL);
 	const int result = worker_create(&tee->worker, run, tee);

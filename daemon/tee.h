@@ -4,7 +4,7 @@
 /*
  * Records what is shown, whatever presents it: each displayed frame once a
  * vblank into a YUV4MPEG2 file, or into a PNG image each, numbered from 0, and
- * beside them, one row a frame, which vblank it was and when. A thread writes;
+ * beside them, one row a frame, which vblank it was and when, and its number. A thread writes;
  * where it does not keep up, or the disk is full, frames are dropped and counted,
  * presentation never waits.
  */
@@ -18,12 +18,21 @@
 
 struct tee;
 
+/* For the times, with the end. */
+#define TEE_TIMES_BYTES 528u
+
 struct tee_params {
-	const char *path; /* of the video; with a % a pattern like "out/%06d.png". Times: PATH.csv, or out/times.csv */
+	const char *path; /* of the video; with a % a pattern like "out/%06d.png" */
 	const struct log *log;
 };
 
-/* Opens both files. NULL with a sentence. */
+/* Where the times go: PATH.csv, or out/times.csv. */
+void tee_times_path(const char *path, char times[TEE_TIMES_BYTES]);
+
+/*
+ * Opens both files. Images get numbers after those that are there; what else is there is written over
+ * (owners_keep_files() puts it aside). NULL with a sentence.
+ */
 struct tee *tee_create(const struct tee_params *params, struct error *error);
 /*
  * Writes what is waiting, closes, says in the log what was written and what was not. A disk that does not answer is
