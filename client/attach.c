@@ -150,10 +150,10 @@ static void try_to_connect(struct shim_attach *attach, const struct shim_layout 
 	const char *path = "";
 	int result = -ENOENT, why = ENOENT;
 
-	/* Told is the first path, or the first one where there is something. */
+	/* Told is the one that answers, else the first one where there is something, else the first. */
 	for (uint32_t i = 0; i < attach->path_count && result < 0; i++) {
 		result = shim_packet_connect(attach->paths[i]);
-		if (i == 0 || (why == ENOENT && result != -ENOENT)) {
+		if (i == 0 || result >= 0 || (why == ENOENT && result != -ENOENT)) {
 			path = attach->paths[i];
 			why = -result;
 		}

@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "client/attach.h"
 #include "tests/client/harness.h"
 #include "tests/test.h"
 
@@ -352,7 +353,6 @@ static void test_killed_and_back(void)
 	CHECK(close_stream(&stream));
 }
 
-/* Where a stream looks when it is not told: the first of two places, then the second. */
 static void hear(int pipe)
 {
 	char byte;
@@ -429,6 +429,31 @@ static void test_forked(void)
 	fake_stop(&daemon, true);
 }
 
+/* Where a stream looks when it is not told: the first of two places, then the second. */
+static void test_second_place(void)
+{
+	const struct pursuit_stream_params params = {.width = 16, .height = 16};
+	struct fake_daemon gone, daemon;
+	struct shim_layout layout;
+	struct shim_attach attach;
+
+	CHECK(shim_layout_init(&layout, &params));
+	CHECK(shim_attach_init(&attach, NULL, NULL));
+	attach.path_count = 2;
+	snprintf(attach.paths[0], SHIM_PATH_BYTES, "%s-gone", harness.path);
+	snprintf(attach.paths[1], SHIM_PATH_BYTES, "%s", harness.path);
+	/* One that has ended leaves its socket behind, where nobody answers. */
+	CHECK(fake_start(&gone, attach.paths[0], FAKE_GOOD));
+	fake_stop(&gone, false);
+	CHECK(fake_start(&daemon, harness.path, FAKE_GOOD));
+	shim_attach_step(&attach, &layout, 0);
+	CHECK_INT(attach.state, PURSUIT_STATE_ATTACHING);
+	CHECK_INT(strlen(strstr(attach.message, harness.path)), strlen(harness.path));
+	shim_attach_finish(&attach);
+	fake_stop(&daemon, true);
+	unlink(attach.paths[0]);
+}
+
 static void test_environment(void)
 {
 	struct pursuit_stream_params params = {.width = 16, .height = 16};
@@ -485,6 +510,7 @@ int main(void)
 	RUN(test_closed_with_frames_out);
 	RUN(test_killed_and_back);
 	RUN(test_forked);
+	RUN(test_second_place);
 	RUN(test_environment);
 	harness_finish();
 	return test_result();
