@@ -9,6 +9,7 @@ import re
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -41,6 +42,21 @@ class Page(html.parser.HTMLParser):
 
 
 class Report(common.Case):
+    made, text = None, None
+
+    @classmethod
+    def tearDownClass(cls):
+        if cls.made:
+            shutil.rmtree(cls.made)
+
+    def small(self, out="out"):
+        """A copy of the report SMALL, which is made once; what it printed."""
+        if not Report.made:
+            Report.made = tempfile.mkdtemp(prefix="pursuit-test-")
+            Report.text = self.must("report", *SMALL, "--out", Report.made + "/out").stdout
+        shutil.copytree(Report.made + "/out", self.path(out))
+        return Report.text
+
     def report(self, *arguments, status=0, out="out", **options):
         return self.must("report", *arguments, "--out", self.path(out), status=status, **options)
 
@@ -60,7 +76,7 @@ class Report(common.Case):
         return row["measures"][measure]["value"]
 
     def test_files(self):
-        text = self.report(*SMALL).stdout
+        text = self.small()
         report, rows, page = self.load()
         self.assertEqual([row["method"] for row in rows], ["hold", "grid", "rendered"])
         self.assertTrue(report["complete"])
@@ -125,7 +141,7 @@ class Report(common.Case):
         self.assertIn("perceived_error is", result.stderr)
 
     def test_baseline(self):
-        self.report(*SMALL)
+        self.small()
         baseline = self.path("out/report.json")
         same = self.report(*SMALL, "--baseline", baseline, "--fail-worse", "0.5", out="same").stdout
         self.assertIn("3 of 3 rows are in both", same)
@@ -140,13 +156,13 @@ class Report(common.Case):
 
     def test_baseline_that_is_written_over(self):
         """The folder may be the same: what counts is the report that was there before."""
-        self.report(*SMALL)
+        self.small()
         changed = self.report(*SMALL, "--cell", "32", "--baseline", self.path("out/report.json"), "--fail-worse", "0.5", status=1)
         self.assertIn("TOO MUCH", changed.stdout)
 
     def test_what_is_not_there_is_not_good(self):
         """A demand that nothing was measured for is not met."""
-        self.report(*SMALL, out="old")
+        self.small(out="old")
         other = [*SMALL[:5], "48x27", *SMALL[6:], "--baseline", self.path("old/report.json")]
         self.assertIn("0 of 3 rows are in both", self.report(*other).stdout)
         self.assertIn("no row is in", self.report(*other, "--fail-worse", "5", status=1).stderr)
@@ -210,7 +226,7 @@ class Report(common.Case):
         self.assertAlmostEqual(line["r2"], xy * xy / (xx * yy), delta=1e-3)
 
     def test_cost(self):
-        self.report(*SMALL)
+        self.small()
         report, _, page = self.load()
         cost = report["cost"]
         self.assertEqual((cost["method"], cost["width"], cost["height"], cost["n"]), ("grid", 96, 54, 2))
@@ -266,7 +282,7 @@ class Report(common.Case):
     def test_plots(self):
         if not shutil.which("gnuplot"):
             self.skipTest("gnuplot is not installed")
-        self.report(*SMALL)
+        self.small()
         for name in ["overall", "speed", "error-0-n2-96x54", "time-0-n2-96x54"]:
             with open(self.path(f"out/plots/{name}.svg")) as file:
                 svg = file.read()
