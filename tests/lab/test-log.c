@@ -168,6 +168,7 @@ static void test_times_in_text(void)
 	memset(&points, 0xff, sizeof(points));
 	points.show = 0;
 	points.source = 0;
+	points.level = points.late = points.edge_lost = points.photon_lost = true;
 	points.phase = -1e9f;
 	for (uint32_t i = 0; i < POINT_COUNT; i++)
 		points.time[i] = INT64_MAX;

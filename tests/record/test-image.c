@@ -173,7 +173,7 @@ static void test_png_small(void)
 		CHECK_INT(image_write_png_small(sample_path("out.png"), data[0], WIDTH, HEIGHT, differences, &error), 0);
 		CHECK_INT(image_read(sample_path("out.png"), IMAGE_BGRA, 0, &image, &error), 0);
 		for (size_t i = 0; i < sizeof(data); i++)
-			CHECK_INT(image.bgra[i], i % 4 == 3 ? 255 : data[0][i]);
+			CHECK_INT(image.bgra[i], i % 4 == 3 ? 255 : data[i / (WIDTH * 4)][i % (WIDTH * 4)]);
 		image_finish(&image);
 	}
 	CHECK_INT(image_write_png_small("/no/folder/x.png", data[0], WIDTH, HEIGHT, true, &error), -ENOENT);
