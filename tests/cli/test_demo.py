@@ -32,16 +32,22 @@ class Demo(common.Case):
         return self.must("demo", "--size", "64x36", "--out", self.path("out"), *arguments, status=status,
                          env=self.environment)
 
+    def socket(self):
+        """Of the daemon of the demo that runs; None before it is there."""
+        paths = [self.path(name + "/socket") for name in os.listdir(self.folder) if name.startswith("pursuit-")]
+        return next(filter(os.path.exists, paths), None)
+
     def start(self, *arguments):
+        """A demo that runs, as soon as frames of it are shown."""
         demo = subprocess.Popen([common.PURSUIT, "demo", "--size", "64x36", "--out", self.path("out"), *arguments],
                                 env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        socket_folder = lambda: [name for name in os.listdir(self.folder) if name.startswith("pursuit-")]
         for _ in range(600):
-            if socket_folder() and os.path.exists(self.path(socket_folder()[0] + "/socket")):
+            status = self.socket() and common.run("status", "--json", "--socket", self.socket()).stdout
+            if status and json.loads(status)["real_frames"] > 20:
                 return demo
-            time.sleep(0.05)
+            time.sleep(0.1)
         demo.kill()
-        self.fail("the daemon of the demo did not come up")
+        self.fail("no frame of the demo is shown")
 
     def assert_nothing_left(self):
         self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("pursuit-")], [])
@@ -84,7 +90,6 @@ class Demo(common.Case):
 
     def test_interrupt_still_reports(self):
         demo = self.start("--seconds", "600")
-        time.sleep(2)
         demo.send_signal(signal.SIGINT)
         output, errors = demo.communicate(timeout=120)
         self.assertEqual(demo.returncode, 0, output + errors)
@@ -93,7 +98,6 @@ class Demo(common.Case):
 
     def test_daemon_that_dies_is_a_failure(self):
         demo = self.start("--seconds", "600")
-        time.sleep(1)
         for child in children(demo.pid):
             os.kill(child, signal.SIGKILL)
         _, errors = demo.communicate(timeout=120)
@@ -136,10 +140,8 @@ class Demo(common.Case):
 
     def test_record_and_status_of_a_running_daemon(self):
         demo = self.start("--seconds", "600")
-        socket = next(name for name in os.listdir(self.folder) if name.startswith("pursuit-"))
-        socket = self.path(socket + "/socket")
+        socket = self.socket()
         try:
-            time.sleep(1)
             self.must("record", self.path("live.pursuit"), "--seconds", "1", "--socket", socket)
             status = json.loads(self.must("status", "--json", "--socket", socket).stdout)
             self.assertGreater(status["real_frames"], 0)
