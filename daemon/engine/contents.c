@@ -119,11 +119,16 @@ static uint64_t count_kept(const struct contents *contents, const struct sheet *
 	return pixels;
 }
 
+void contents_forget(struct contents *contents, uint64_t number)
+{
+	struct contents_image *image = find(contents, number);
+	if (image)
+		image->number = 0;
+}
+
 uint64_t contents_close(struct contents *contents, uint64_t number, const struct sheet *sheet)
 {
-	struct contents_image *same = find(contents, number);
-	if (same)
-		same->number = 0;
+	contents_forget(contents, number);
 	for (uint32_t i = 0; i < CONTENTS_IMAGES; i++)
 		if (contents->images[i].tiles == sheet->after) {
 			contents->images[i].number = number;

@@ -98,6 +98,9 @@ void contents_open(struct contents *contents, uint64_t held, struct sheet *sheet
 /* It is done, and what it shows goes out under that number. Returns how many pixels were there before. */
 uint64_t contents_close(struct contents *contents, uint64_t number, const struct sheet *sheet);
 
+/* Nobody asks for an image of that number any more: there is room for another. */
+void contents_forget(struct contents *contents, uint64_t number);
+
 /* A tile that shows what the number stands for: is it there already? Else it has to be written. Any thread. */
 static inline bool sheet_has(const struct sheet *sheet, uint32_t tile, uint64_t number)
 {

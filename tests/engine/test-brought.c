@@ -16,6 +16,7 @@
 #define WIDTH 321u
 #define HEIGHT 123u
 #define BYTES ((size_t)4 * WIDTH * HEIGHT)
+#define TEXTURES 6u
 
 static struct {
 	EGLDisplay display;
@@ -222,20 +223,21 @@ static void test_textures_in_turn(void)
 {
 	const struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
 	struct engine *engine = make("pursuit", ENGINE_CONTEXT_EGL_SURFACELESS);
-	struct engine_image targets[3] = {
-		{.texture = make_texture()}, {.texture = make_texture()}, {.texture = make_texture()}};
+	struct engine_image targets[TEXTURES] = {0};
 	struct picture picture;
 	struct error error = {""};
 	uint64_t kept = 0;
 	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
 	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 9);
 	memset(picture_row(&picture, PURSUIT_ROLE_UI, 50), 0x60, (size_t)2 * WIDTH);
+	for (uint32_t i = 0; i < TEXTURES; i++)
+		targets[i].texture = make_texture();
 	for (uint32_t frame = 0; frame < 24; frame++) {
 		move_patch(&picture, frame / 2);
 		picture_row(&picture, PURSUIT_ROLE_UI, 50)[frame] ^= 0x20;
 		CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), 0);
 		for (uint32_t i = 0; i < 3; i++)
-			check_texture(engine, &targets[(frame * 2 + i) % 3], 3 * frame + i);
+			check_texture(engine, &targets[(3 * frame + i) % TEXTURES], 3 * frame + i);
 		kept += engine_get_report(engine)->bytes_kept;
 	}
 	CHECK(kept > 24 * BYTES);

@@ -23,6 +23,7 @@ int gl_shown_begin(struct engine *engine, struct error *error)
 	if (target->width != engine->width || target->height != engine->height || engine->params.leave_nothing_out)
 		shown->number = 0;
 	contents_open(&gl_of(engine)->contents, shown->number, &shown->sheet);
+	shown->before = shown->number;
 	shown->number = 0;
 	shown->numbers = shown->sheet.after;
 	const int result = begin_tiles(shown, engine->width, engine->height, error);
@@ -34,6 +35,7 @@ void gl_shown_end(struct engine *engine)
 	struct gl_shown *shown = &gl_of(engine)->shown;
 	shown->number = engine_new_number(engine);
 	contents_close(&gl_of(engine)->contents, shown->number, &shown->sheet);
+	contents_forget(&gl_of(engine)->contents, shown->before);
 }
 
 void gl_shown_keep(struct engine *engine, enum picture_id id)

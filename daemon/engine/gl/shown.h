@@ -18,6 +18,7 @@ struct engine;
 /* A zeroed one is ready for use. */
 struct gl_shown {
 	uint64_t number;         /* what contents know it by; 0: nobody knows what it holds */
+	uint64_t before;         /* and knew it by, while one is made */
 	const uint64_t *numbers; /* of the tiles of the picture made last */
 	struct sheet sheet;      /* while one is made */
 	struct tiles moving;     /* where the mesh is drawn */
