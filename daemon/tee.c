@@ -20,6 +20,7 @@
 #define PICTURES 20u
 #define QUEUED 64u
 #define PATIENCE_NS UINT64_C(5000000000)
+#define PATIENCES 6u
 
 struct tee_picture {
 	uint8_t *data;          /* packed */
@@ -273,35 +274,67 @@ struct tee *tee_create(const struct tee_params *params, struct error *error)
 	return NULL;
 }
 
-static void close_files(struct tee *tee)
+static int close_files(struct tee *tee, struct error *error)
 {
-	struct error error = {""};
-	if (y4m_destroy(&tee->video, &error) < 0)
-		log_error(tee->params.log, "tee: %s", error.text);
+	int result = y4m_destroy(&tee->video, error);
 	const bool wrong = ferror(tee->times) != 0;
-	if (fclose(tee->times) != 0 || wrong)
-		log_error(tee->params.log, "tee: %s.csv was not written whole", tee->path);
-	log_info(tee->params.log,
-			 "tee: %" PRIu64 " frames in %s, %" PRIu64 " dropped, %" PRIu64 " pictures of another size", tee->written,
-			 tee->path, tee->dropped, tee->other_size);
+	if ((fclose(tee->times) != 0 || wrong) && result == 0)
+		result = error_set(error, -EIO, "the times of %.300s were not written whole", tee->path);
+	return result;
 }
 
-/* False: the disk does not answer; the thread has its memory for ever. */
+static void free_tee(struct tee *tee)
+{
+	for (uint32_t i = 0; i < PICTURES; i++)
+		free(tee->pictures[i].data);
+	pthread_cond_destroy(&tee->wake);
+	pthread_mutex_destroy(&tee->lock);
+	free(tee);
+}
+
+/* On the thread, once the disk has answered after all; the log may be gone by then. */
+static void finish_late(void *data)
+{
+	struct tee *tee = data;
+	struct error error;
+	close_files(tee, &error);
+	free_tee(tee);
+}
+
+static uint64_t count_done(struct tee *tee)
+{
+	pthread_mutex_lock(&tee->lock);
+	const uint64_t done = tee->written + tee->dropped;
+	pthread_mutex_unlock(&tee->lock);
+	return done;
+}
+
+/* False: the disk does not answer; the thread has its memory until it does. */
 static bool wait_for_thread(struct tee *tee)
 {
-	if (worker_destroy(&tee->worker, PATIENCE_NS, NULL))
-		return true;
-	pthread_mutex_lock(&tee->lock);
-	log_error(tee->params.log,
-			  "tee: %s does not take what is written; given up after %" PRIu64 " frames, %" PRIu64 " dropped",
-			  tee->path, tee->written, tee->dropped + tee->count);
-	pthread_mutex_unlock(&tee->lock);
-	return false;
+	struct worker *worker = tee->worker; /* what is the thread's is gone when that has ended */
+	const uint64_t patience_ns = tee->params.patience_ns ? tee->params.patience_ns : PATIENCE_NS;
+	uint64_t before = UINT64_MAX, done = count_done(tee);
+	bool ended = false;
+	for (unsigned i = 0; i < PATIENCES && !ended && done != before; i++) {
+		before = done;
+		ended = worker_wait(worker, patience_ns);
+		done = count_done(tee);
+	}
+	if (!ended) {
+		pthread_mutex_lock(&tee->lock);
+		log_error(tee->params.log,
+				  "tee: %s does not take what is written; given up after %" PRIu64 " frames, %" PRIu64 " dropped",
+				  tee->path, tee->written, tee->dropped + tee->count);
+		pthread_mutex_unlock(&tee->lock);
+	}
+	return worker_destroy(&worker, 0, finish_late);
 }
 
 void tee_destroy(struct tee **tee)
 {
 	struct tee *self = *tee;
+	struct error error;
 	*tee = NULL;
 	if (!self)
 		return;
@@ -311,10 +344,10 @@ void tee_destroy(struct tee **tee)
 	pthread_mutex_unlock(&self->lock);
 	if (!wait_for_thread(self))
 		return;
-	close_files(self);
-	for (uint32_t i = 0; i < PICTURES; i++)
-		free(self->pictures[i].data);
-	pthread_cond_destroy(&self->wake);
-	pthread_mutex_destroy(&self->lock);
-	free(self);
+	if (close_files(self, &error) < 0)
+		log_error(self->params.log, "tee: %s", error.text);
+	log_info(self->params.log,
+			 "tee: %" PRIu64 " frames in %s, %" PRIu64 " dropped, %" PRIu64 " pictures of another size", self->written,
+			 self->path, self->dropped, self->other_size);
+	free_tee(self);
 }

@@ -24,6 +24,7 @@ struct tee;
 struct tee_params {
 	const char *path; /* of the video; with a % a pattern like "out/%06d.png" */
 	const struct log *log;
+	uint64_t patience_ns; /* with a disk that takes nothing at all; 0: five seconds */
 };
 
 /* Where the times go: PATH.csv, or out/times.csv. */
@@ -35,8 +36,9 @@ void tee_times_path(const char *path, char times[TEE_TIMES_BYTES]);
  */
 struct tee *tee_create(const struct tee_params *params, struct error *error);
 /*
- * Writes what is waiting, closes, says in the log what was written and what was not. A disk that does not answer is
- * given up after five seconds. NULL accepted.
+ * Writes what is waiting, closes, says in the log what was written and what was not. A disk is given up that takes no
+ * picture for as long as the patience, or has not taken all after six times that; should it answer later, what was
+ * waiting is written and closed all the same, unless the process has ended. NULL accepted.
  */
 void tee_destroy(struct tee **tee);
 

@@ -4,7 +4,13 @@
 /* Recordings of what is shown that follow each other, quicker than what was drawn for them is shown: none misses any.
  */
 
+#include <fcntl.h>
 #include <inttypes.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "daemon/tees.h"
@@ -125,12 +131,98 @@ static void test_without_end(void)
 		serials_of(i);
 }
 
+/* ---- disks that are slow: a pipe that is read now and then ---- */
+
+#define LARGE 256u
+#define FRAMES 12u
+
+static uint8_t large[LARGE * LARGE * 4];
+
+static struct tee *fill_pipe(uint64_t patience_ns, int *reader)
+{
+	const struct presenter_image image = {.data = large, .stride = LARGE * 4, .width = LARGE, .height = LARGE};
+	struct error error = {""};
+	CHECK_INT(mkfifo(path_of(0, ""), 0600), 0);
+	*reader = open(path_of(0, ""), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+	struct tee *tee =
+		tee_create(&(struct tee_params){.path = path_of(0, ""), .log = &quiet, .patience_ns = patience_ns}, &error);
+	CHECK(tee != NULL);
+	for (uint64_t serial = 1; serial <= FRAMES; serial++) {
+		const struct presenter_flip flip = {.vblank = serial, .serial = serial, .group = 1};
+		tee_add(tee, &image, 1, serial);
+		tee_flip(tee, &flip, &grid);
+	}
+	return tee;
+}
+
+/* Reads to the end, a piece at a time, with pauses. Gives the bytes. */
+static size_t drain(int reader, long pause_ns)
+{
+	static uint8_t piece[LARGE * LARGE * 3];
+	size_t bytes = 0;
+	struct pollfd written = {reader, POLLIN, 0};
+	CHECK_INT(poll(&written, 1, 20000), 1); /* before that it would be the end */
+	fcntl(reader, F_SETFL, 0);
+	for (ssize_t got = 1; got > 0;) {
+		size_t filled = 0;
+		while (filled < sizeof(piece) && (got = read(reader, piece + filled, sizeof(piece) - filled)) > 0)
+			filled += (size_t)got;
+		bytes += filled;
+		nanosleep(&(struct timespec){0, pause_ns}, NULL);
+	}
+	close(reader);
+	return bytes;
+}
+
+static void *destroy(void *data)
+{
+	struct tee *tee = data;
+	tee_destroy(&tee);
+	return NULL;
+}
+
+/* Of what was logged since. */
+static bool is_given_up(void)
+{
+	static char content[4096];
+	const ssize_t got = pread(quiet.fd, content, sizeof(content) - 1, 0);
+	content[got > 0 ? got : 0] = 0;
+	CHECK(ftruncate(quiet.fd, 0) == 0 && lseek(quiet.fd, 0, SEEK_SET) == 0);
+	return strstr(content, "given up after") != NULL;
+}
+
+/* It takes longer than the patience, but something all the time: nothing is given up. */
+static void test_slow_disk(void)
+{
+	pthread_t thread;
+	int reader;
+	struct tee *tee = fill_pipe(UINT64_C(2000000000), &reader);
+	CHECK_INT(pthread_create(&thread, NULL, destroy, tee), 0);
+	CHECK(drain(reader, 250000000) > FRAMES * LARGE * LARGE * 3);
+	pthread_join(thread, NULL);
+	CHECK(!is_given_up());
+	CHECK_STRING(serials_of(0), "1 2 3 4 5 6 7 8 9 10 11 12 ");
+}
+
+/* One that answers after it was given up: all is written and closed, and nothing is kept. */
+static void test_disk_that_comes_back(void)
+{
+	int reader;
+	struct tee *tee = fill_pipe(1000000, &reader);
+	tee_destroy(&tee);
+	CHECK(is_given_up());
+	CHECK(drain(reader, 0) > FRAMES * LARGE * LARGE * 3);
+	serials_of(0);
+}
+
 int main(void)
 {
 	CHECK(mkdtemp(folder) != NULL);
-	log_init(&quiet, LOG_LEVEL_ERROR);
+	quiet = (struct log){.fd = memfd_create("log", MFD_CLOEXEC), .level = LOG_LEVEL_ERROR};
 	RUN(test_in_a_row);
 	RUN(test_without_end);
+	RUN(test_slow_disk);
+	RUN(test_disk_that_comes_back);
 	CHECK_INT(rmdir(folder), 0);
 	return test_result();
 }
