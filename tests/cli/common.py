@@ -6,6 +6,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 PURSUIT = os.environ.get("PURSUIT", "pursuit")
@@ -32,6 +33,15 @@ class Case(unittest.TestCase):
         result = run(*arguments, **options)
         self.assertEqual(result.returncode, status, f"{arguments}: {result.stdout}{result.stderr}")
         return result
+
+    def wait_for_frames(self, count, *arguments, **options):
+        """Until a daemon has had more real frames than that, however long it takes where others have the processors."""
+        for _ in range(600):
+            result = run("status", "--json", *arguments, **options)
+            if result.returncode == 0 and json.loads(result.stdout)["real_frames"] > count:
+                return
+            time.sleep(0.1)
+        self.fail("no frames arrive")
 
     def record(self, name, **options):
         """A small recording of a scene; options as --name value, underscores for dashes."""

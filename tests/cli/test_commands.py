@@ -173,7 +173,7 @@ class Commands(common.Case):
             daemon = subprocess.Popen([PURSUITD, "--latency"], env=self.environment, stderr=log)
             game = subprocess.Popen([EXAMPLE, "--seconds", "3000"], env=self.environment, stdout=log, stderr=log)
         try:
-            time.sleep(2)
+            self.wait_for_frames(60, env=self.environment)
             for where, command in found:
                 with self.subTest(where=where, command=command):
                     self.try_command(command)

@@ -112,9 +112,10 @@ class PythonClient(common.Case):
     def test_its_motion_is_right(self):
         """check-stream compares motion with what the picture does."""
         self.start()
-        client = self.client("--seconds", "8", "--fps", "20")
-        time.sleep(1)
+        client = self.client("--seconds", "600", "--fps", "20")
+        self.wait_for_frames(5, env=self.environment)
         found = common.run("check-stream", "--seconds", "3", "--json", env=self.environment)
+        client.terminate()
         client.communicate(timeout=200)
         report = json.loads(found.stdout)
         mistakes = [one for one in report["findings"] if one["code"].startswith(("motion", "depth", "jitter", "no-"))]

@@ -27,21 +27,13 @@ class Integration(common.Case):
                 result = subprocess.run([step, "--seconds", "0.3"], env=self.environment(), timeout=240)
                 self.assertEqual(result.returncode, 0)
 
-    def wait_for_frames(self):
-        for _ in range(300):
-            result = common.run("status", "--json", env=self.environment())
-            if result.returncode == 0 and json.loads(result.stdout)["real_frames"] > 10:
-                return
-            time.sleep(0.2)
-        self.fail("no frames arrive")
-
     def check(self, step):
         daemon = start([PURSUITD, "--present", "headless"], self.environment())
         game = None
         try:
             time.sleep(0.5)
             game = start([step, "--seconds", "200"], self.environment())
-            self.wait_for_frames()
+            self.wait_for_frames(10, env=self.environment())
             path = self.path("game.pursuit")
             self.must("record", path, "--seconds", 1.5, env=self.environment())
             result = common.run("check-stream", path, "--json")
