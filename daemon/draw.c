@@ -47,12 +47,14 @@ static int acquire(struct render *render, struct presenter_image *image)
 	const int result = acquire_somewhere(render, width, height, image);
 	if (result == -EBUSY)
 		render_expect_flips(render);
-	/* When it begins and when it ends, since it is tried at each vblank. */
-	if (result < 0 && !render->lacks_picture)
+	/* When it begins and when it ends, since it is tried at each vblank; both may be often. */
+	if (result < 0 && !render->lacks_picture && log_limit_allows(&render->lack_limit, clock_now(render->clock))) {
 		log_warning(render->log, "no memory for a picture of %ux%u: %s", width, height, strerror(-result));
-	else if (result == 0 && render->lacks_picture)
+		render->lacks_picture = true;
+	} else if (result == 0 && render->lacks_picture) {
 		log_info(render->log, "there is memory for pictures again");
-	render->lacks_picture = result < 0;
+		render->lacks_picture = false;
+	}
 	return result;
 }
 

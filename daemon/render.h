@@ -70,6 +70,7 @@ struct render {
 	struct view view;
 	struct tees tees;
 	bool lacks_picture;          /* the presenter had none to draw into, and that was said */
+	struct log_limit lack_limit; /* of saying so */
 	struct log_limit draw_limit; /* of the engine's complaints */
 	bool settings_changed;       /* the engine does not know yet */
 	bool redraw;                 /* the view has changed: a picture that stays is drawn anew */

@@ -217,6 +217,15 @@ static void test_no_picture_to_draw_into(void)
 	CHECK(world.render.paused && world.render.front_plain);
 	CHECK_INT(count_logged("no memory for a picture of 64x64"), 1);
 	CHECK_INT(count_logged("there is memory for pictures again"), 1);
+	/* Where it begins and ends all the time it is not said each time. */
+	for (unsigned i = 0; i < 40; i++) {
+		world.full = 1;
+		render_set_view(&world.render, i % 2 ? 0 : VIEW_HELP);
+		run(6);
+	}
+	CHECK_INT(world.lacks, 60);
+	CHECK(count_logged("no memory for a picture") <= 4 * LOG_LIMIT_PER_SECOND);
+	CHECK_INT(count_logged("there is memory for pictures again"), count_logged("no memory for a picture"));
 	close(world.log.fd);
 	world_finish();
 }
