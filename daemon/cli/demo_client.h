@@ -43,7 +43,10 @@ bool demo_client_was_quit(const struct demo_client *client);
 /* CLOCK_MONOTONIC of the scene's time 0. */
 uint64_t demo_client_epoch(const struct demo_client *client);
 
-/* {"frames", "skipped_frames", "render_ms", "submit_us", ...} */
+/*
+ * {"submitted_frames", "skipped_frames", "render_ms", "submit_us", ...}: the time to give the frame's work to GL, and
+ * that of pursuit_gl_submit(), in which a CPU renderer draws the frame and reads it back.
+ */
 json_t *demo_client_json(struct demo_client *client);
 
 #endif

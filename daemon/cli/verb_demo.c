@@ -14,7 +14,7 @@
 #include "daemon/clock.h"
 #include "demo_client.h"
 #include "demo_daemon.h"
-#include "demo_score.h"
+#include "demo_scorer.h"
 #include "figures.h"
 #include "interrupt.h"
 #include "task.h"
@@ -51,8 +51,11 @@ struct demo {
 	char title[200];
 	struct scene_source *source;
 	struct demo_daemon daemon;
+	struct demo_scorer scorer;
 	struct demo_client *client;
 	uint64_t epoch_ns;
+	double seconds; /* that the run took */
+	bool software;  /* the client renders on a CPU */
 	json_t *status; /* the daemon's at the end of the run, before the burst */
 	json_t *client_figures;
 	struct timeline timeline;
@@ -116,7 +119,8 @@ static int make_source(struct demo *demo, struct error *error)
 {
 	struct demo_options *options = &demo->options;
 	const bool sized = options->size.width != 0, rated = options->rate.numerator != 0;
-	bool software = true;
+	bool *const software = &demo->software;
+	*software = true;
 	if (!sized)
 		options->size = software_size;
 	if (!rated)
@@ -124,8 +128,8 @@ static int make_source(struct demo *demo, struct error *error)
 	struct scene_source_params params = {.scene = options->scene, .size = options->size, .rate = options->rate};
 	demo->source = scene_source_create(&params, error);
 	if (demo->source)
-		scene_source_renderer(demo->source, &software);
-	if (software)
+		scene_source_renderer(demo->source, software);
+	if (*software)
 		return demo->source ? 0 : -ENOTSUP;
 	params.rate = options->rate = rated ? options->rate : gpu_rate;
 	if (!sized) {
@@ -222,7 +226,11 @@ static void take_turns(struct demo *demo)
 
 static int start(struct demo *demo, struct error *error)
 {
+	const struct demo_options *options = &demo->options;
 	int result = make_paths(demo, error);
+	if (result == 0)
+		result =
+			demo_scorer_start(&demo->scorer, options->scene, &options->settings, demo->recording, demo->contact, error);
 	if (result == 0)
 		result = start_daemon(demo, error);
 	if (result == 0) {
@@ -296,6 +304,7 @@ static int run(struct demo *demo, struct error *error)
 		return error_set(error, -ECHILD, "pursuitd died; see %s", demo->log);
 	if (result == 0)
 		result = control_ask(&demo->daemon.control, "status", -1, &demo->status, error);
+	demo->seconds = clock_seconds() - (double)demo->epoch_ns / 1e9;
 	demo->client_figures = demo_client_json(demo->client);
 	return result == 0 ? record_burst(demo, error) : result;
 }
@@ -304,17 +313,13 @@ static int run(struct demo *demo, struct error *error)
 
 static int score(struct demo *demo, struct error *error)
 {
-	const struct demo_score_params params = {
-		.recording = demo->recording,
-		.timeline = &demo->timeline,
-		.settings = &demo->options.settings,
-		.source = demo->source,
+	struct demo_scorer_request request = {
 		.size = demo->options.size,
+		.rate = demo->options.rate,
 		.epoch_ns = demo->epoch_ns,
-		.title = demo->title,
-		.contact = demo->contact,
 	};
-	return demo_score(&params, &demo->score, error);
+	snprintf(request.title, sizeof(request.title), "%s", demo->title);
+	return demo_scorer_ask(&demo->scorer, &request, &demo->timeline, &demo->score, error);
 }
 
 static int draw_timeline(const struct demo *demo, struct error *error)
@@ -369,8 +374,10 @@ static void print_summary(const struct demo *demo, const json_t *report)
 {
 	double refresh = figure(report, "refresh", NULL), vblanks = figure(report, "vblanks", NULL);
 	printf("%s\n", demo->title);
-	printf("  %.1f Hz displayed for %.1f s, %.2f%% of the vblanks on time", figure(report, "displayed_hz", NULL),
-		   refresh > 0 ? vblanks / refresh : 0, 100 * figure(report, "on_time", NULL));
+	const double shown = refresh > 0 ? vblanks / refresh : 0;
+	printf("  %.1f Hz displayed for %.1f s%s, %.2f%% of the vblanks on time", figure(report, "displayed_hz", NULL),
+		   shown, shown < 0.95 * demo->seconds ? " (without the pauses that the client made)" : "",
+		   100 * figure(report, "on_time", NULL));
 	if (demo->score.quality.frames)
 		printf(", PSNR %.2f dB, SSIM %.4f", demo->score.quality.psnr, demo->score.quality.ssim);
 	printf("\n  %.0f real and %.0f in-between frames; %.0f in-betweens late, %.0f real frames lost\n",
@@ -380,9 +387,12 @@ static void print_summary(const struct demo *demo, const json_t *report)
 		   figure(report, "engine_ms", "p50"), figure(report, "engine_ms", "p99"),
 		   figure(report, "submit_to_flip_ms", "p50"), figure(report, "submit_to_flip_ms", "p99"));
 	const json_t *client = json_object_get(report, "client");
-	printf("  client: rendering %.1f ms, submit %.0f us (medians), %.0f of its frames skipped\n",
-		   figure(client, "render_ms", "p50"), figure(client, "submit_us", "p50"),
-		   figure(client, "skipped_frames", NULL));
+	const double skipped = figure(client, "skipped_frames", NULL);
+	printf(
+		"  client: %.1f ms to issue a frame, %.1f ms to submit it, which %s (medians); %.0f of %.0f frames skipped\n",
+		figure(client, "render_ms", "p50"), figure(client, "submit_us", "p50") / 1e3,
+		demo->software ? "draws it on the CPU and reads it back" : "begins to read it back", skipped,
+		skipped + figure(client, "submitted_frames", NULL));
 	if (demo->task) {
 		char text[128];
 		task_describe(demo->task, text, sizeof(text));
@@ -420,6 +430,7 @@ static int leave_results(struct demo *demo, struct error *error)
 static void finish(struct demo *demo)
 {
 	demo_client_destroy(&demo->client);
+	demo_scorer_finish(&demo->scorer);
 	scene_source_destroy(&demo->source);
 	timeline_finish(&demo->timeline);
 	task_destroy(&demo->task);

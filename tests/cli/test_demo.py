@@ -90,6 +90,10 @@ class Demo(common.Case):
 
     def test_interrupt_still_reports(self):
         demo = self.start("--seconds", "600")
+        nices = [os.getpriority(os.PRIO_PROCESS, child) for child in children(demo.pid)]
+        self.assertEqual(len(nices), 2, "the daemon and who scores")
+        self.assertLessEqual(max(nices), os.getpriority(os.PRIO_PROCESS, 0))
+        self.assertEqual(os.getpriority(os.PRIO_PROCESS, demo.pid), 19)
         demo.send_signal(signal.SIGINT)
         output, errors = demo.communicate(timeout=120)
         self.assertEqual(demo.returncode, 0, output + errors)
