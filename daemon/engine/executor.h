@@ -93,7 +93,7 @@ struct executor_ops {
 struct executor {
 	const struct executor_ops *ops;
 	struct engine_info info;
-	uint32_t max_size; /* of pictures, pixels a side */
+	uint32_t max_size; /* of pictures, pixels a side, at most PURSUIT_MAX_SIZE */
 	uint64_t bytes;    /* that its pictures and buffers take: GL's memory, or the process's; 0: not counted */
 	struct pool *pool; /* threads for what is done on the CPU whoever the executor is; NULL: none */
 };

@@ -27,6 +27,7 @@ static struct {
 	PFNGLTEXIMAGE2DPROC tex_image;
 	PFNGLGETTEXIMAGEPROC get_tex_image;
 	PFNGLCLIENTWAITSYNCPROC client_wait_sync;
+	PFNGLGETINTEGERVPROC get_integer;
 	uint32_t waits; /* for all that was drawn */
 } gl;
 
@@ -79,10 +80,24 @@ static GLenum APIENTRY count_wait(GLsync sync, GLbitfield flags, GLuint64 timeou
 	return gl.client_wait_sync(sync, flags, timeout);
 }
 
+/* A renderer of larger pictures than there are. */
+static void APIENTRY tell_more(GLenum name, GLint *values)
+{
+	gl.get_integer(name, values);
+	if (name == GL_MAX_TEXTURE_SIZE || name == GL_MAX_VIEWPORT_DIMS)
+		values[0] = 2 * (GLint)PURSUIT_MAX_SIZE;
+	if (name == GL_MAX_VIEWPORT_DIMS)
+		values[1] = values[0];
+}
+
 typedef void (*function)(void);
 
 static function find_counted(const char *name)
 {
+	if (strcmp(name, "glGetIntegerv") == 0) {
+		find(name, &gl.get_integer);
+		return (function)tell_more;
+	}
 	if (strcmp(name, "glClientWaitSync") != 0)
 		return eglGetProcAddress(name);
 	find(name, &gl.client_wait_sync);
@@ -349,6 +364,19 @@ static void test_not_taken(void)
 	picture_finish(&picture);
 }
 
+static void test_too_large(void)
+{
+	const struct engine_begin_params begin = {.n = 2, .last_phase = -1.0};
+	struct engine *engine = make("hold", ENGINE_CONTEXT_EGL_SURFACELESS);
+	struct picture picture;
+	struct error error = {""};
+	picture_init(&picture, PURSUIT_MAX_SIZE + 4096, 1, PURSUIT_FORMAT_BGRA8, 0);
+	CHECK_INT(engine_begin(engine, &picture.frame, &begin, &error), -EINVAL);
+	CHECK(strstr(error.text, "20480 x 1") && strstr(error.text, "16384 x 16384"));
+	picture_finish(&picture);
+	engine_destroy(&engine);
+}
+
 int main(void)
 {
 	if (!start())
@@ -359,5 +387,6 @@ int main(void)
 	RUN(test_unfinished);
 	RUN(test_lost_under_way);
 	RUN(test_not_taken);
+	RUN(test_too_large);
 	return test_result();
 }

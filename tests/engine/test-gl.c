@@ -459,10 +459,11 @@ static void show_both(struct engine *engine, const struct picture *picture, uint
 }
 
 /* Whatever fails while a frame of another size is taken and shown: the next one is shown as if nothing had. */
-static void check_failures(enum engine_analysis analysis)
+static void check_failures(enum engine_analysis analysis, bool shrinks)
 {
 	struct engine_params own = params;
 	struct picture small, large;
+	const struct picture *fails_with = shrinks ? &small : &large;
 	const size_t bytes = (size_t)2 * 4 * 400 * 300;
 	uint8_t *want = malloc(bytes), *out = malloc(bytes);
 	uint32_t count = 0;
@@ -472,6 +473,7 @@ static void check_failures(enum engine_analysis analysis)
 	struct engine *engine = make(&own);
 	struct gl *gl = &gl_of(engine)->context->gl;
 	draw(&small, 200, 150, 0.0);
+	shake(&small, 1);
 	draw(&large, 400, 300, 0.7);
 	show_both(engine, &large, want);
 	real = *gl;
@@ -480,9 +482,9 @@ static void check_failures(enum engine_analysis analysis)
 	gl->UnmapBuffer = fail_unmap;
 	while (failed) {
 		fails_at = 0;
-		show_both(engine, &small, out);
+		show_both(engine, shrinks ? &large : &small, out);
 		fails_at = ++count;
-		failed = try_all(engine, &large, out) || fails_at == 0;
+		failed = try_all(engine, fails_with, out) || fails_at == 0;
 		fails_at = 0;
 		show_both(engine, &large, out);
 		const bool same = memcmp(out, want, bytes) == 0;
@@ -500,8 +502,9 @@ static void check_failures(enum engine_analysis analysis)
 
 static void test_failures(void)
 {
-	check_failures(ENGINE_ANALYSIS_CPU);
-	check_failures(ENGINE_ANALYSIS_GPU);
+	check_failures(ENGINE_ANALYSIS_CPU, false);
+	check_failures(ENGINE_ANALYSIS_CPU, true);
+	check_failures(ENGINE_ANALYSIS_GPU, false);
 }
 
 /* ---- times ---- */

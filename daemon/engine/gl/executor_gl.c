@@ -207,7 +207,8 @@ struct executor *executor_gl_create(const struct engine_params *params, struct e
 		return NULL;
 	}
 	executor->base.info = executor->context->info;
-	executor->base.max_size = (uint32_t)executor->context->gl.max_size;
+	const uint32_t most = (uint32_t)executor->context->gl.max_size;
+	executor->base.max_size = most < PURSUIT_MAX_SIZE ? most : PURSUIT_MAX_SIZE;
 	timer_init(&executor->timer, &executor->context->gl, !executor->base.info.software || params->query_software,
 			   params->finish_each_pass);
 	executor->readback.buffered = !executor->base.info.software || params->buffer_software;

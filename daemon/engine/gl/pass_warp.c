@@ -23,6 +23,7 @@ static int make_depth(struct engine *engine, struct error *error)
 	gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shown->texture, 0);
 	if (executor->depth_width == shown->width && executor->depth_height == shown->height)
 		return 0;
+	executor->depth_width = executor->depth_height = 0;
 	gl->BindRenderbuffer(GL_RENDERBUFFER, executor->depth);
 	gl->RenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH_COMPONENT32F, (GLsizei)shown->width, (GLsizei)shown->height);
 	gl->FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, executor->depth);

@@ -50,19 +50,27 @@ static void make_block(struct stream *stream, const struct gl *gl)
 	stream->made++;
 }
 
+/* Its memory is left to whoever may read it yet, and it gets other memory. */
+static void abandon(struct stream_block *block)
+{
+	block->bytes = 0;
+}
+
 /* The next block, which nobody reads. */
 static struct stream_block *free_block(struct stream *stream, const struct gl *gl)
 {
 	struct stream_block *block = &stream->blocks[stream->next];
-	const bool busy = stream->made >= STREAM_BLOCKS && is_busy(block, gl);
+	bool busy = stream->made >= STREAM_BLOCKS && is_busy(block, gl);
 	if (stream->made < STREAM_BLOCKS || (busy && stream->made < stream->wished)) {
 		make_block(stream, gl);
 		return block;
 	}
 	if (busy) {
 		stream->waits++;
-		gl->ClientWaitSync(block->busy, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS);
+		busy = gl->ClientWaitSync(block->busy, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS) == GL_TIMEOUT_EXPIRED;
 	}
+	if (busy)
+		abandon(block);
 	if (block->busy)
 		gl->DeleteSync(block->busy);
 	block->busy = NULL;
@@ -99,6 +107,8 @@ int stream_send(struct stream *stream, const struct gl *gl, const struct stream_
 						  (const void *)to->offset);
 	if (good) {
 		block->busy = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+		if (!block->busy)
+			abandon(block);
 		stream->next = (stream->next + 1) % stream->made;
 	}
 	gl->BindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);

@@ -1,0 +1,183 @@
+/* SPDX-License-Identifier: MIT */
+/* SPDX-FileCopyrightText: 2026 The Pursuit authors */
+
+/*
+ * Blocks on their way up, with a GPU that carries out its commands late, at random: none is written to while that GPU
+ * may still read it, though it hangs and gives no fences, and there are no more of them than were asked for.
+ */
+#include "tests/test.h"
+
+#include "daemon/engine/gl/stream.h"
+#include "tests/engine/picture.h"
+
+#define BUFFERS 1000u
+
+/* Commands are counted from 1. */
+static struct {
+	uint32_t random;
+	uint64_t asked, done;       /* commands */
+	uint64_t read[BUFFERS + 1]; /* by buffer: the last command that reads its memory of now */
+	size_t bytes[BUFFERS + 1];
+	GLuint made, bound;
+	uint32_t hangs, fenceless, waits;
+	uint8_t memory[4096];
+} gpu;
+
+static uint32_t pick(uint32_t count)
+{
+	return picture_random(&gpu.random) % count;
+}
+
+static void APIENTRY gen_buffers(GLsizei count, GLuint *buffers)
+{
+	for (GLsizei i = 0; i < count; i++)
+		buffers[i] = ++gpu.made;
+	CHECK(gpu.made <= BUFFERS);
+}
+
+static void APIENTRY delete_buffers(GLsizei count, const GLuint *buffers)
+{
+	(void)count;
+	(void)buffers;
+}
+
+static void APIENTRY bind_buffer(GLenum target, GLuint buffer)
+{
+	CHECK_INT(target, GL_PIXEL_UNPACK_BUFFER);
+	gpu.bound = buffer;
+}
+
+static void APIENTRY buffer_data(GLenum target, GLsizeiptr size, const void *data, GLenum usage)
+{
+	(void)target;
+	(void)data;
+	(void)usage;
+	gpu.bytes[gpu.bound] = (size_t)size;
+	gpu.read[gpu.bound] = 0;
+}
+
+static void *APIENTRY map(GLenum target, GLintptr offset, GLsizeiptr length, GLbitfield access)
+{
+	(void)target;
+	CHECK(access & GL_MAP_UNSYNCHRONIZED_BIT);
+	CHECK((size_t)(offset + length) <= gpu.bytes[gpu.bound]);
+	CHECK(gpu.read[gpu.bound] <= gpu.done);
+	return gpu.memory;
+}
+
+static GLboolean APIENTRY unmap(GLenum target)
+{
+	(void)target;
+	return GL_TRUE;
+}
+
+static void APIENTRY tex_sub_image(GLenum target, GLint level, GLint x, GLint y, GLsizei width, GLsizei height,
+								   GLenum format, GLenum type, const void *pixels)
+{
+	(void)target;
+	(void)level;
+	(void)x;
+	(void)y;
+	(void)format;
+	(void)type;
+	CHECK((size_t)pixels + 4 * (size_t)width * (size_t)height <= gpu.bytes[gpu.bound]);
+	gpu.read[gpu.bound] = ++gpu.asked;
+}
+
+static GLsync APIENTRY fence(GLenum condition, GLbitfield flags)
+{
+	(void)condition;
+	(void)flags;
+	const bool none = pick(20) == 0;
+	gpu.fenceless += none;
+	/* A fence is the number of the command that it stands behind. */
+	return none ? NULL : (GLsync)(uintptr_t)(gpu.asked + 1);
+}
+
+static void APIENTRY delete_sync(GLsync sync)
+{
+	CHECK(sync != NULL);
+}
+
+static GLenum APIENTRY wait(GLsync sync, GLbitfield flags, GLuint64 timeout)
+{
+	const uint64_t command = (uint64_t)(uintptr_t)sync - 1;
+	const bool hangs = pick(10) == 0;
+	CHECK(timeout == 0 || flags & GL_SYNC_FLUSH_COMMANDS_BIT);
+	if (command <= gpu.done)
+		return GL_ALREADY_SIGNALED;
+	gpu.waits += timeout > 0;
+	if (timeout == 0 || hangs) {
+		gpu.hangs += timeout > 0;
+		return GL_TIMEOUT_EXPIRED;
+	}
+	gpu.done = command;
+	return GL_CONDITION_SATISFIED;
+}
+
+static const struct gl gl = {.GenBuffers = gen_buffers,
+							 .DeleteBuffers = delete_buffers,
+							 .BindBuffer = bind_buffer,
+							 .BufferData = buffer_data,
+							 .MapBufferRange = map,
+							 .UnmapBuffer = unmap,
+							 .TexSubImage2D = tex_sub_image,
+							 .FenceSync = fence,
+							 .DeleteSync = delete_sync,
+							 .ClientWaitSync = wait};
+
+static void send(struct stream *stream, uint32_t rows)
+{
+	const struct stream_target target = {.width = 10, .rows = (GLsizei)rows};
+	struct error error;
+	CHECK(stream_begin(stream, &gl, 40 * (size_t)rows, &error) != NULL);
+	CHECK_INT(stream_send(stream, &gl, &target, 1, &error), 0);
+}
+
+static void check_seed(uint32_t seed)
+{
+	struct stream stream = {.made = 0};
+	memset(&gpu, 0, sizeof(gpu));
+	gpu.random = seed;
+	for (uint32_t i = 0; i < 2000; i++) {
+		if (i % 500 == 499)
+			stream_widen(&stream, 1 + pick(200));
+		if (pick(3) == 0)
+			gpu.done += pick((uint32_t)(gpu.asked - gpu.done) + 1);
+		send(&stream, 1 + pick(100));
+		CHECK(stream.made <= STREAM_MOST && (stream.made <= STREAM_BLOCKS || stream.made <= stream.wished));
+		CHECK_INT(stream.made, gpu.made);
+	}
+	CHECK(gpu.hangs > 0 && gpu.fenceless > 0 && stream.made > STREAM_BLOCKS);
+	stream_finish(&stream, &gl);
+}
+
+static void test_none_is_overwritten(void)
+{
+	for (uint32_t seed = 1; seed <= 20; seed++)
+		check_seed(seed);
+}
+
+/* Those of a GPU that does nothing are made until there are as many as were asked for; then somebody waits. */
+static void test_who_waits(void)
+{
+	struct stream stream = {.made = 0};
+	memset(&gpu, 0, sizeof(gpu));
+	gpu.random = 5;
+	stream_widen(&stream, 10);
+	for (uint32_t i = 0; i < STREAM_BLOCKS + 10; i++)
+		send(&stream, 1);
+	CHECK_INT(gpu.waits, 0);
+	CHECK_INT(stream.made, STREAM_BLOCKS + 10);
+	send(&stream, 1);
+	CHECK_INT(stream.made, STREAM_BLOCKS + 10);
+	CHECK(gpu.waits > 0);
+	stream_finish(&stream, &gl);
+}
+
+int main(void)
+{
+	RUN(test_none_is_overwritten);
+	RUN(test_who_waits);
+	return test_result();
+}
