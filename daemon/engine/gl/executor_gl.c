@@ -74,6 +74,7 @@ static void destroy(struct executor **executor)
 	free(gone->intake.hashes[0]);
 	free(gone->intake.hashes[1]);
 	free(gone->intake.rows);
+	tiles_finish(&gone->intake.sent);
 	free(gone);
 	*executor = NULL;
 }

@@ -25,6 +25,7 @@ struct gl_intake {
 	struct tile_hash *hashes[2]; /* by tile of ORIGINAL and of the UI */
 	bool hashed[2];              /* that they are what the textures hold */
 	size_t tiles;                /* room for so many in each */
+	struct tiles sent;           /* of a row of tiles those that are sent */
 	uint8_t *rows;               /* a row of tiles, since blocks on their way up may not be read */
 	size_t row_bytes;
 };

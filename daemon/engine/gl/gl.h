@@ -14,6 +14,9 @@
 
 #include "daemon/error.h"
 
+/* Fewer tiles (contents.h) between others of a row go along with these though nobody needs them: a call costs more. */
+#define GL_TILES_OF_CALL 3u
+
 /* Every one of these must exist. */
 #define GL_FUNCTIONS(X)                                 \
 	X(ActiveTexture, ACTIVETEXTURE)                     \

@@ -6,9 +6,6 @@
 
 #include "daemon/engine/gl/executor_gl.h"
 
-/* A call costs more than so many tiles of a row beside each other. */
-#define TILES_OF_CALL 3u
-
 static int bind_texture(struct engine *engine, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
@@ -31,7 +28,7 @@ static uint64_t copy(const struct engine *engine)
 	const GLint x = (GLint)engine->job.image->texture_x, y = (GLint)engine->job.image->texture_y;
 	struct bounds bounds = {0};
 	uint64_t bytes = 0;
-	while (tiles_next_bounds(&gl_of(engine)->leaving, TILES_OF_CALL, &bounds)) {
+	while (tiles_next_bounds(&gl_of(engine)->leaving, GL_TILES_OF_CALL, &bounds)) {
 		const GLint left = (GLint)bounds.left, top = (GLint)bounds.top;
 		const GLint right = (GLint)bounds.right, bottom = (GLint)bounds.bottom;
 		gl->BlitFramebuffer(left, top, right, bottom, x + left, y + top, x + right, y + bottom, GL_COLOR_BUFFER_BIT,

@@ -14,11 +14,10 @@
 
 #include "daemon/engine/pass.h"
 
-/* A call costs more than so many tiles of a row that are there already. */
-#define TILES_OF_CALL 3u
-/* Rectangles of a row of tiles; the last takes the rest of it. */
-#define MOST_CALLS 16u
 #define MOST_TILES ((PURSUIT_MAX_SIZE + TILE_WIDTH - 1) / TILE_WIDTH)
+
+/* Rectangles of a row of tiles. */
+#define MOST_CALLS ((MOST_TILES + GL_TILES_OF_CALL) / (GL_TILES_OF_CALL + 1))
 
 /* What is sent: a plane, converted. */
 struct layer {
@@ -81,28 +80,12 @@ static void take(const struct gl_intake *intake, const struct layer *layer, cons
 	}
 }
 
-/* The tiles from `left` on to `right` - 1 go up. */
-static void add_target(const struct gl *gl, const struct layer *layer, struct tile_row *row, uint32_t left,
-					   uint32_t right)
-{
-	const uint32_t x = left * TILE_WIDTH, end = right * TILE_WIDTH;
-	const uint32_t width = (end < layer->plane->width ? end : layer->plane->width) - x;
-	row->targets[row->target_count++] = (struct stream_target){.x = (GLint)x,
-															   .y = (GLint)row->y,
-															   .width = (GLsizei)width,
-															   .rows = (GLsizei)row->rows,
-															   .format = gl->pixel_format,
-															   .type = gl->pixel_type,
-															   .offset = row->bytes};
-	row->bytes += 4 * (size_t)width * row->rows;
-}
-
-/* Finds what has to be sent. Tiles in between that are there already go along where they are few. */
-static void find_targets(struct engine *engine, struct layer *layer, struct tile_row *row,
-						 const struct tile_hash *hashes)
+/* Marks what has to be sent; how many tiles. */
+static uint32_t find_changed(struct engine *engine, const struct layer *layer, const struct tile_row *row,
+							 const struct tile_hash *hashes)
 {
 	struct contents *contents = &gl_of(engine)->contents;
-	uint32_t left = 0, right = 0; /* of what goes up next, if left < right */
+	struct tiles *sent = &gl_of(engine)->intake.sent;
 	for (uint32_t i = 0; i < row->count; i++) {
 		struct tile_hash *known = &layer->hashes[row->first + i];
 		const bool forced = !*layer->hashed || (!layer->bounds && contents_changed(contents, row->first + i));
@@ -110,15 +93,27 @@ static void find_targets(struct engine *engine, struct layer *layer, struct tile
 			continue;
 		*known = hashes[i];
 		contents_change(contents, row->first + i);
-		if (left < right && i - right >= TILES_OF_CALL && row->target_count + 1 < MOST_CALLS) {
-			add_target(table_of(engine), layer, row, left, right);
-			left = i;
-		}
-		left = left < right ? left : i;
-		right = i + 1;
+		sent->marked[i] = 1;
 	}
-	if (left < right)
-		add_target(table_of(engine), layer, row, left, right);
+	tiles_sum(sent);
+	return sent->count;
+}
+
+static void find_targets(const struct engine *engine, struct tile_row *row)
+{
+	const struct gl *gl = table_of(engine);
+	struct bounds bounds = {0};
+	while (tiles_next_bounds(&gl_of(engine)->intake.sent, GL_TILES_OF_CALL, &bounds)) {
+		const uint32_t width = bounds.right - bounds.left;
+		row->targets[row->target_count++] = (struct stream_target){.x = (GLint)bounds.left,
+																   .y = (GLint)row->y,
+																   .width = (GLsizei)width,
+																   .rows = (GLsizei)row->rows,
+																   .format = gl->pixel_format,
+																   .type = gl->pixel_type,
+																   .offset = row->bytes};
+		row->bytes += 4 * (size_t)width * row->rows;
+	}
 }
 
 static int send(struct engine *engine, struct layer *layer, const struct tile_row *row, struct error *error)
@@ -148,9 +143,13 @@ static int upload_row(struct engine *engine, struct layer *layer, uint32_t index
 	row.first = index * row.count;
 	if (!layer->bounds && !planes_changed(engine, row.y, row.rows))
 		return 0;
+	if (!tiles_begin(&executor->intake.sent, engine->width, row.rows, TILE_WIDTH, TILE_HEIGHT))
+		return error_set(error, -ENOMEM, "out of memory for a row of tiles of %u pixels", engine->width);
 	take(&executor->intake, layer, &row, hashes);
-	find_targets(engine, layer, &row, hashes);
-	return row.target_count ? send(engine, layer, &row, error) : 0;
+	if (!find_changed(engine, layer, &row, hashes))
+		return 0;
+	find_targets(engine, &row);
+	return send(engine, layer, &row, error);
 }
 
 static int upload(struct engine *engine, struct layer *layer, struct error *error)
@@ -204,7 +203,7 @@ static int make_room(struct engine *engine, bool ui, bool original, struct error
 	return result == 0 ? reserve_rows(intake, 4 * (size_t)engine->width, error) : result;
 }
 
-/* What the texture holds is about to be another's, or not known at all. */
+/* `original`: the texture of ORIGINAL holds nothing else. */
 static int take_planes(struct engine *engine, int color, int ui, bool original, struct error *error)
 {
 	int result = make_room(engine, ui >= 0, original, error);

@@ -9,9 +9,6 @@
 /* A GPU that needs longer is not coming back. */
 #define PATIENCE_NS UINT64_C(5000000000)
 
-/* A call costs more than so many tiles of a row beside each other. */
-#define TILES_OF_CALL 3u
-
 _Static_assert(4 * PURSUIT_MAX_SIZE <= READBACK_BLOCK, "a block holds a row");
 
 static uint32_t buffers(const struct readback *readback)
@@ -216,7 +213,7 @@ int readback_ask(struct readback *readback, const struct gl *gl, const struct re
 	struct asking asking = {.image = image, .arrival = arrival, .limit = allowed(readback, image->tiles, ahead)};
 	struct bounds bounds = {0};
 	int result = 0;
-	while (result == 0 && tiles_next_bounds(image->tiles, TILES_OF_CALL, &bounds)) {
+	while (result == 0 && tiles_next_bounds(image->tiles, GL_TILES_OF_CALL, &bounds)) {
 		*bytes += 4 * (uint64_t)(bounds.right - bounds.left) * (bounds.bottom - bounds.top);
 		if (readback->buffered)
 			result = ask_for(readback, gl, &asking, &bounds, error);
