@@ -197,7 +197,8 @@ json_t *report_load_baseline(const char *path, struct error *error)
 	json_t *old = json_load_file(path, 0, &why);
 	if (old && json_is_array(json_object_get(old, "rows")))
 		return old;
-	error_set(error, -EINVAL, "%s: %s", path, old ? "is no report.json: it has no rows" : why.text);
+	error_set(error, -EINVAL, "%s: %s%s", path, old || why.line > 0 ? "is no report.json: " : "",
+			  old ? "it has no rows" : why.text);
 	json_decref(old);
 	return NULL;
 }

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "daemon/printable.h"
+#include "daemon/record/recording.h"
 #include "report.h"
 #include "report_frames.h"
 
@@ -100,11 +101,28 @@ static int plan_scenes(struct report *report)
 	return *list ? args_wrong(VERB, "--scenes: %.40s... is too long for a name", list) : STATUS_DONE;
 }
 
+/* One that is not there is told before an hour of scenes, not after it. */
+static bool can_be_read(const char *path)
+{
+	const struct recording_reader_params params = {.path = path};
+	struct error error = {""};
+	struct recording_reader *reader = recording_reader_create(&params, &error);
+	const bool can = reader != NULL;
+	if (!can)
+		args_failed(VERB, "%s", error.text);
+	recording_reader_destroy(&reader);
+	return can;
+}
+
 /* Recordings are separated by commas, and may be long. */
 static int plan_recordings(struct report *report)
 {
 	char *list = report->options.recordings ? strdup(report->options.recordings) : NULL, *rest = NULL;
 	for (char *path = list ? strtok_r(list, ",", &rest) : NULL; path; path = strtok_r(NULL, ",", &rest)) {
+		if (!can_be_read(path)) {
+			free(list);
+			return STATUS_FAILED;
+		}
 		struct report_work work = {.recording = strdup(path), .n = 2};
 		char *copy = strdup(path);
 		if (copy)

@@ -373,7 +373,7 @@ static void print_lab(const struct page *page, const json_t *lab)
 		const json_t *state = json_object_get(lab, lines[i]);
 		if (!json_is_object(state))
 			continue;
-		snprintf(line, sizeof(line), "  %-10s%s%.300s", lines[i],
+		snprintf(line, sizeof(line), "  %-9s %s%.300s", lines[i],
 				 json_is_true(json_object_get(state, "there")) ? "" : "MISSING: ", text_of(state, "text"));
 		print_line(page, line);
 	}

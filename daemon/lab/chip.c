@@ -79,7 +79,7 @@ int chip_explain_open(const char *chip, int code, struct error *error)
 
 int chip_explain_missing(const char *chip, const struct chip_list *list, struct error *error)
 {
-	const char *there = list->count ? "there are " : "there is none";
+	const char *there = list->count ? "there are " : "this machine has none";
 	if (!*chip)
 		return error_set(error, -ENOENT, "gpio-chip: no chip has all lines that are named; %s%s", there, list->text);
 	return error_set(error, -ENOENT, "gpio-chip: there is no chip \"%.64s\"; %s%s", chip, there, list->text);

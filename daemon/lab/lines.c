@@ -30,6 +30,14 @@ static void tell(struct lines *lines, uint64_t now_ns)
 	lines->check_ns = now_ns + CHECK_DELAY;
 }
 
+/* What is wrong with the chip is said for each list of lines. */
+static void name_lines(const struct lines *lines, struct error *error)
+{
+	const struct error why = *error;
+	if (strncmp(why.text, lines->params.option, strlen(lines->params.option)) != 0)
+		error_set(error, 0, "%s %.64s: %.400s", lines->params.option, lines->params.lines, why.text);
+}
+
 bool lines_revive(struct lines *lines, uint64_t now_ns)
 {
 	struct error error = {""};
@@ -38,6 +46,7 @@ bool lines_revive(struct lines *lines, uint64_t now_ns)
 	lines->chip = chip_open(&lines->params, &error);
 	if (!lines->chip) {
 		wait_longer(lines, now_ns);
+		name_lines(lines, &error);
 		if (strncmp(error.text, lines->text, sizeof(lines->text) - 1) != 0)
 			log_warning(lines->log, "%s; trying again until it works", error.text);
 		snprintf(lines->text, sizeof(lines->text), "%.*s", (int)sizeof(lines->text) - 1, error.text);

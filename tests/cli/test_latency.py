@@ -138,7 +138,7 @@ class Live(Case):
         self.assertIn("has no row yet", self.must("latency", "--socket", socket, status=1).stderr)
         text = self.must("top", "--once", "--socket", socket, "--interval-ms", "100").stdout
         self.assertIn("no stream", text)
-        self.assertRegex(text, "marker +MISSING: ")
+        self.assertRegex(text, "marker    MISSING: gpio-line 17: gpio-chip: there is no chip \"no-such-chip\"")
         self.assertNotIn("\033", text)
 
     def test_no_daemon(self):

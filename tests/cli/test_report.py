@@ -210,8 +210,10 @@ class Report(common.Case):
         first = [frame["displayed"][0]["psnr"] for frame in psnr["frames"][:12]]
         self.assertAlmostEqual(self.value(report, "grid", "psnr"), sum(first) / len(first), places=4)
         self.assertIn("guessed", page.text)
-        self.assertIn("none.pursuit", self.report("--scenes", "none", "--recordings", self.path("none.pursuit"), "--methods",
-                                                  "hold", out="none", status=1).stderr)
+        none = self.report("--scenes", "all", "--recordings", self.path("none.pursuit"), "--methods", "hold", out="none",
+                           status=1).stderr
+        self.assertIn("none.pursuit: cannot be opened", none)
+        self.assertNotIn("rendering", none)
 
     def check_line(self, line, count):
         """Slope, intercept and R2 are those of the points."""
