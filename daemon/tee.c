@@ -4,11 +4,13 @@
 #include "daemon/tee.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "daemon/open_at_once.h"
@@ -21,6 +23,8 @@
 #define QUEUED 64u
 #define PATIENCE_NS UINT64_C(5000000000)
 #define PATIENCES 6u
+/* Tried for an image. */
+#define NAMES 100u
 
 struct tee_picture {
 	uint8_t *data;          /* packed */
@@ -52,26 +56,48 @@ struct tee {
 
 /* ---- the thread ---- */
 
-/* Images of before stay. */
+/* Images that are there stay: the next one gets a number after theirs. */
 static int number_on(struct tee *tee, struct error *error)
 {
 	uint64_t *numbers;
 	size_t count;
 	const int result = pattern_list(tee->path, &numbers, &count, error);
 	if (result == 0 && count > 0)
-		tee->first_number = numbers[count - 1] + 1;
+		tee->first_number = numbers[count - 1] + 1 - tee->written;
 	free(numbers);
 	return result;
+}
+
+/* Makes the file, unless an image has that name. What else is wrong with it is told when it is written. */
+static bool is_free(const char *name)
+{
+	struct stat file;
+	const int fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+	if (fd >= 0)
+		close(fd);
+	return fd >= 0 || errno != EEXIST || lstat(name, &file) < 0 || !S_ISREG(file.st_mode);
+}
+
+/* A recording of before with the same pattern may still be writing. */
+static int take_name(struct tee *tee, char name[PATTERN_MAX_PATH], struct error *error)
+{
+	for (unsigned i = 0; i < NAMES; i++) {
+		if ((tee->written == 0 || i > 0) && number_on(tee, error) < 0)
+			return -EIO;
+		const uint64_t number = tee->first_number + tee->written;
+		if (!pattern_name(tee->path, number, name))
+			return error_set(error, -ENAMETOOLONG, "%s: the name of frame %" PRIu64 " is too long", tee->path, number);
+		if (is_free(name))
+			return 0;
+	}
+	return error_set(error, -EEXIST, "%s: others take all the names", tee->path);
 }
 
 static int write_image(struct tee *tee, const struct tee_picture *picture, struct error *error)
 {
 	char name[PATTERN_MAX_PATH];
-	if (tee->written == 0 && number_on(tee, error) < 0)
+	if (take_name(tee, name, error) < 0)
 		return -EIO;
-	const uint64_t number = tee->first_number + tee->written;
-	if (!pattern_name(tee->path, number, name))
-		return error_set(error, -ENAMETOOLONG, "%s: the name of frame %" PRIu64 " is too long", tee->path, number);
 	const int result =
 		image_write_png(name, picture->data, (size_t)tee->width * 4, tee->width, tee->height, false, error);
 	if (result < 0)

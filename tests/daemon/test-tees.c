@@ -131,6 +131,54 @@ static void test_without_end(void)
 		serials_of(i);
 }
 
+/* ---- images ---- */
+
+static struct tee *make_images(void)
+{
+	char pattern[96];
+	struct error error = {""};
+	snprintf(pattern, sizeof(pattern), "%s/%%d.png", folder);
+	struct tee *tee = tee_create(&(struct tee_params){.path = pattern, .log = &quiet}, &error);
+	CHECK(tee != NULL);
+	return tee;
+}
+
+static bool comes(unsigned number)
+{
+	char path[96];
+	snprintf(path, sizeof(path), "%s/%u.png", folder, number);
+	for (unsigned i = 0; i < 2000 && access(path, F_OK) < 0; i++)
+		nanosleep(&(struct timespec){0, 10000000}, NULL);
+	return access(path, F_OK) == 0;
+}
+
+static void record_one(struct tee *tee, uint64_t serial)
+{
+	const struct presenter_image image = {.data = pixels, .stride = SIDE * 4, .width = SIDE, .height = SIDE};
+	const struct presenter_flip flip = {.vblank = serial, .serial = serial, .group = 1};
+	tee_add(tee, &image, 1, serial);
+	tee_flip(tee, &flip, &grid);
+}
+
+/* The one of before still writes while its pattern is set once more: neither writes over what the other has. */
+static void test_images_of_two(void)
+{
+	char path[96];
+	struct tee *one = make_images(), *other = make_images();
+	for (unsigned i = 0; i < 4; i++) {
+		record_one(i % 2 ? other : one, i + 1);
+		CHECK(comes(i));
+	}
+	tee_destroy(&one);
+	tee_destroy(&other);
+	for (unsigned i = 0; i < 4; i++) {
+		snprintf(path, sizeof(path), "%s/%u.png", folder, i);
+		CHECK_INT(unlink(path), 0);
+	}
+	snprintf(path, sizeof(path), "%s/times.csv", folder);
+	CHECK_INT(unlink(path), 0);
+}
+
 /* ---- disks that are slow: a pipe that is read now and then ---- */
 
 #define LARGE 256u
@@ -221,6 +269,7 @@ int main(void)
 	quiet = (struct log){.fd = memfd_create("log", MFD_CLOEXEC), .level = LOG_LEVEL_ERROR};
 	RUN(test_in_a_row);
 	RUN(test_without_end);
+	RUN(test_images_of_two);
 	RUN(test_slow_disk);
 	RUN(test_disk_that_comes_back);
 	CHECK_INT(rmdir(folder), 0);
