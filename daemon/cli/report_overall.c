@@ -155,6 +155,36 @@ static void print_means(const struct report *report, FILE *out)
 	}
 }
 
+static int longest_name(const struct report *report, int least)
+{
+	for (uint32_t i = 0; i < report->row_count; i++) {
+		char name[256];
+		report_row_name(&report->rows[i], name, sizeof(name));
+		if (report->rows[i].work->recording && (int)strlen(name) > least)
+			least = (int)strlen(name);
+	}
+	return least;
+}
+
+static void print_recordings(const struct report *report, FILE *out)
+{
+	static const char title[] = "Recordings, each frame predicting the next:";
+	const int width = longest_name(report, (int)sizeof(title) - 1);
+	fprintf(out, "%-*s %8s %15s %15s\n", width, title, "ms p50", "PSNR", "SSIM");
+	for (uint32_t i = 0; i < report->row_count; i++) {
+		const struct report_row *row = &report->rows[i];
+		char name[256];
+		if (!row->work->recording)
+			continue;
+		report_row_name(row, name, sizeof(name));
+		fprintf(out, "%-*s", width, name);
+		print_number(out, 8, 2, report_row_ms(row, 50));
+		print_number(out, 15, 2, score_value(&row->score, SCORE_PSNR));
+		print_number(out, 15, 4, score_value(&row->score, SCORE_SSIM));
+		fputc('\n', out);
+	}
+}
+
 void report_print(const struct report *report, FILE *out)
 {
 	bool recordings = false;
@@ -163,17 +193,5 @@ void report_print(const struct report *report, FILE *out)
 	if (!report->works[0].recording)
 		print_means(report, out);
 	if (recordings)
-		fprintf(out, "%-28s %8s %15s %15s\n", "Recordings, each frame predicting the next:", "ms p50", "PSNR", "SSIM");
-	for (uint32_t i = 0; i < report->row_count; i++) {
-		const struct report_row *row = &report->rows[i];
-		char name[256];
-		if (!row->work->recording)
-			continue;
-		report_row_name(row, name, sizeof(name));
-		fprintf(out, "%-43s", name);
-		print_number(out, 8, 2, report_row_ms(row, 50));
-		print_number(out, 15, 2, score_value(&row->score, SCORE_PSNR));
-		print_number(out, 15, 4, score_value(&row->score, SCORE_SSIM));
-		fputc('\n', out);
-	}
+		print_recordings(report, out);
 }

@@ -200,11 +200,13 @@ class Report(common.Case):
         self.assertIn("interrupted", page.text)
 
     def test_a_recording(self):
-        path = self.record("walk.pursuit", size="96x54")
-        self.report("--scenes", "none", "--recordings", path, "--methods", "hold,grid", "--vary", "none")
+        name = "walk-through-the-whole-garden"
+        path = self.record(name + ".pursuit", size="96x54")
+        said = self.report("--scenes", "none", "--recordings", path, "--methods", "hold,grid", "--vary", "none").stdout
+        self.assertEqual(len({len(line) for line in said.splitlines()[:3]}), 1, said)
         report, rows, page = self.load()
         self.assertEqual([(row["source"], row["kind"], row["method"]) for row in rows],
-                         [("walk", "recording", "hold"), ("walk", "recording", "grid")])
+                         [(name, "recording", "hold"), (name, "recording", "grid")])
         self.assertEqual((rows[0]["width"], rows[0]["perceived_error"]), ("96", ""))
         psnr = self.figures("replay", path, "--predict", "--method", "grid")
         first = [frame["displayed"][0]["psnr"] for frame in psnr["frames"][:12]]
