@@ -14,6 +14,32 @@
 #include "figures.h"
 #include "report_cost.h"
 
+#define MS                                                                                                      \
+	"milliseconds by CLOCK_MONOTONIC for a real frame with its in-betweens, divided by their number, one at a " \
+	"time, upload and read-back included: "
+
+/* Of report.csv, in this order, before the measures of score_table. */
+static const char *const columns[][2] = {
+	{"source", "the scene, or the file of the recording without its folder and its ending"},
+	{"kind", "scene, or recording: each frame predicts the next"},
+	{"method", "that made the displayed frames"},
+	{"setting", "what differs from the settings of the report; default: nothing"},
+	{"n", "displayed frames for each real one"},
+	{"width", "of the pictures, pixels"},
+	{"height", "of the pictures, pixels"},
+	{"context", "where the engine ran"},
+	{"engine_ms_p50", MS "the median"},
+	{"engine_ms_p99", MS "99 of 100 took less"},
+	{"engine_ms_p25", MS "a quarter took less"},
+	{"engine_ms_p75", MS "three quarters took less"},
+	{"engine_frames", "real frames that were timed"},
+	{"bytes_up", "bytes to the engine's textures, mean of the displayed frames"},
+	{"bytes_down", "bytes from the engine's textures, mean of the displayed frames"},
+	{"in_betweens", "pictures that were scored"},
+	{"windows", "real intervals that the pursuit camera looked at"},
+};
+#define COLUMNS (sizeof(columns) / sizeof(*columns))
+
 struct report_writer {
 	FILE *csv;
 	char path[4096];
@@ -66,9 +92,8 @@ struct report_writer *report_writer_create(const char *folder, struct error *err
 		report_writer_destroy(&writer);
 		return NULL;
 	}
-	fputs("source,kind,method,setting,n,width,height,context,engine_ms_p50,engine_ms_p99,engine_ms_p25,engine_ms_p75,"
-		  "engine_frames,bytes_up,bytes_down,in_betweens,windows",
-		  writer->csv);
+	for (size_t i = 0; i < COLUMNS; i++)
+		fprintf(writer->csv, "%s%s", i ? "," : "", columns[i][0]);
 	for (int i = 0; i < SCORE_MEASURES; i++)
 		fprintf(writer->csv, ",%s", score_table[i].name);
 	fputc('\n', writer->csv);
@@ -190,7 +215,9 @@ json_t *report_json(const struct report *report)
 {
 	char version[32];
 	snprintf(version, sizeof(version), "%d.%d.%d", PURSUIT_VERSION_MAJOR, PURSUIT_VERSION_MINOR, PURSUIT_VERSION_PATCH);
-	json_t *rows = json_array(), *help = json_object();
+	json_t *rows = json_array(), *help = json_object(), *texts = json_object();
+	for (size_t i = 0; i < COLUMNS; i++)
+		json_object_set_new(texts, columns[i][0], json_string(columns[i][1]));
 	for (uint32_t i = 0; i < report->row_count; i++)
 		json_array_append_new(rows, row_json(&report->rows[i]));
 	for (int i = 0; i < SCORE_MEASURES; i++)
@@ -204,6 +231,7 @@ json_t *report_json(const struct report *report)
 		json_pack("{s:s, s:s, s:s, s:f, s:b, s:b, s:o, s:o, s:o}", "pursuit", "report", "version", version, "started",
 				  report->started, "seconds", report->seconds, "complete", !report->interrupted, "full",
 				  (int)report->options.full, "machine", machine_json(report), "measures", help, "rows", rows);
+	json_object_set_new(json, "columns", texts);
 	json_object_set_new(json, "cost", report_cost_json(report));
 	if (report->tables)
 		json_object_set(json, "tables", report->tables);

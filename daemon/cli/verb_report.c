@@ -51,7 +51,8 @@ static bool read_options(struct report_options *options, int argc, char **argv, 
 		.summary =
 			"Error against run time: plays scenes and recordings with every method and some settings, measures\n"
 			"engine time, what an eye sees of the display, and the rest, and writes report.json, report.csv (one\n"
-			"row for each scene, method and setting) and report.html. Ctrl-C ends it early with what it has.",
+			"row for each scene, method and setting; report.json says what its columns mean) and report.html.\n"
+			"Ctrl-C ends it early with what it has.",
 		.status = "what --fail-under or --fail-worse demands is not there",
 		.examples = "  pursuit report\n"
 					"      all scenes and methods, about ten minutes on two cores\n"

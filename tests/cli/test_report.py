@@ -69,6 +69,8 @@ class Report(common.Case):
         with open(self.path(out + "/report.html")) as file:
             page.feed(file.read())
         self.assertEqual((page.open, page.fetched), ([], []))
+        for row in rows[:1]:
+            self.assertEqual(list(row), [*report["columns"], *report["measures"]])
         return report, rows, page
 
     def value(self, report, method, measure, setting="default"):
