@@ -36,6 +36,12 @@ struct tolerance {
 	float displacement, depth;
 };
 
+/* Pictures have at most 16384 pixels a side. */
+static struct merge_leaf leaf_at(uint32_t column, uint32_t row, uint32_t size)
+{
+	return (struct merge_leaf){(uint16_t)column, (uint16_t)row, (uint16_t)size};
+}
+
 static struct block block_at(const struct plan *plan, const struct merge_leaf *leaf)
 {
 	const struct plan_vertex *top = plan->vertices + (size_t)leaf->row * plan->columns + leaf->column;
@@ -87,11 +93,23 @@ static bool is_flat(const struct plan *plan, const struct merge_leaf *leaf, cons
 	return true;
 }
 
+/* Neither moves nor is snapped any vertex of the block: they lie where they always do. */
+static bool rests(const struct plan *plan, const struct merge_leaf *leaf)
+{
+	const struct plan_vertex *row = plan->vertices + (size_t)leaf->row * plan->columns + leaf->column;
+	for (uint32_t j = 0; j <= leaf->size; j++, row += plan->columns)
+		for (uint32_t i = 0; i <= leaf->size; i++)
+			if (row[i].ux != 0.0f || row[i].uy != 0.0f || row[i].snapped != 0.0f)
+				return false;
+	return true;
+}
+
 /* A merge under way. */
 struct work {
 	struct merge *merge;
 	const struct plan *plan;
 	struct tolerance tolerance;
+	bool depths; /* they matter */
 	uint32_t *indices;
 };
 
@@ -112,15 +130,55 @@ static void use(uint8_t *vertex)
 	__atomic_store_n(vertex, 1, __ATOMIC_RELAXED);
 }
 
-static void add_leaf(const struct work *work, uint32_t block_row, const struct merge_leaf *leaf)
+static void add_leaf(const struct work *work, uint32_t block_row, struct merge_leaf leaf)
 {
-	uint8_t *top = work->merge->used + (size_t)leaf->row * work->plan->columns + leaf->column;
-	uint8_t *bottom = top + (size_t)leaf->size * work->plan->columns;
+	uint8_t *top = work->merge->used + (size_t)leaf.row * work->plan->columns + leaf.column;
+	uint8_t *bottom = top + (size_t)leaf.size * work->plan->columns;
 	use(top);
-	use(top + leaf->size);
+	use(top + leaf.size);
 	use(bottom);
-	use(bottom + leaf->size);
-	leaves_of(work, block_row)[work->merge->rows[block_row].leaves++] = *leaf;
+	use(bottom + leaf.size);
+	leaves_of(work, block_row)[work->merge->rows[block_row].leaves++] = leaf;
+}
+
+/* What is found out of a block at rest holds until its depths change, or for ever if these do not matter. */
+static bool may_merge(const struct work *work, const struct merge_leaf *leaf)
+{
+	uint8_t *known = work->merge->flat + (size_t)leaf->row * work->plan->columns + leaf->column;
+	const unsigned bit = work->depths ? MERGE_FLAT_DEPTHS(leaf->size) : MERGE_FLAT(leaf->size);
+	const bool lasts = rests(work->plan, leaf);
+	if (lasts && *known & bit)
+		return true;
+	const bool flat = is_flat(work->plan, leaf, &work->tolerance);
+	if (lasts && flat)
+		*known |= (uint8_t)bit;
+	return flat;
+}
+
+/* Forgets what depends on the depths of a block of the largest size, part of which may lie beyond the plan. */
+static void compare_depths(const struct work *work, uint32_t column, uint32_t row)
+{
+	const struct plan *plan = work->plan;
+	const uint32_t right = column + LARGEST < plan->columns ? column + LARGEST : plan->columns - 1;
+	const uint32_t bottom = row + LARGEST < plan->rows ? row + LARGEST : plan->rows - 1;
+	bool same = true;
+	for (uint32_t j = row; j <= bottom && same; j++)
+		for (uint32_t i = column; i <= right; i++) {
+			const size_t at = (size_t)j * plan->columns + i;
+			same &= plan->vertices[at].z == work->merge->depths[at];
+		}
+	for (uint32_t j = row; j < bottom && !same; j++)
+		for (uint32_t i = column; i < right; i++)
+			work->merge->flat[(size_t)j * plan->columns + i] &= MERGE_FLAT_DEPTHS(1) - 1;
+}
+
+/* Of the rows of vertices above those of the next row of blocks. */
+static void keep_depths(const struct work *work, uint32_t block_row)
+{
+	const struct plan *plan = work->plan;
+	const uint32_t next = first_row(block_row + 1), end = next + 1 < plan->rows ? next : plan->rows;
+	for (size_t at = (size_t)first_row(block_row) * plan->columns; at < (size_t)end * plan->columns; at++)
+		work->merge->depths[at] = plan->vertices[at].z;
 }
 
 static void divide(const struct work *work, uint32_t block_row, struct merge_leaf leaf)
@@ -129,13 +187,13 @@ static void divide(const struct work *work, uint32_t block_row, struct merge_lea
 	if (leaf.column >= columns || leaf.row >= rows)
 		return;
 	bool inside = leaf.column + leaf.size <= columns && leaf.row + leaf.size <= rows;
-	if (leaf.size == 1 || (inside && is_flat(work->plan, &leaf, &work->tolerance))) {
-		add_leaf(work, block_row, &leaf);
+	if (leaf.size == 1 || (inside && may_merge(work, &leaf))) {
+		add_leaf(work, block_row, leaf);
 		return;
 	}
 	uint32_t half = leaf.size / 2;
 	for (uint32_t i = 0; i < 4; i++)
-		divide(work, block_row, (struct merge_leaf){leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half});
+		divide(work, block_row, leaf_at(leaf.column + (i & 1) * half, leaf.row + (i >> 1) * half, half));
 }
 
 /* The outermost row and column of cells are halves; blocks begin at the first whole cell. */
@@ -147,13 +205,16 @@ static void divide_row(void *context, uint32_t block_row, uint32_t thread)
 	work->merge->rows[block_row].leaves = 0;
 	if (block_row == 0) {
 		for (uint32_t i = 0; i + 1 < plan->columns; i++)
-			add_leaf(work, 0, &(struct merge_leaf){i, 0, 1});
+			add_leaf(work, 0, leaf_at(i, 0, 1));
 		return;
 	}
 	for (uint32_t i = row; i < row + LARGEST && i + 1 < plan->rows; i++)
-		add_leaf(work, block_row, &(struct merge_leaf){0, i, 1});
-	for (uint32_t column = 1; column + 1 < plan->columns; column += LARGEST)
-		divide(work, block_row, (struct merge_leaf){column, row, LARGEST});
+		add_leaf(work, block_row, leaf_at(0, i, 1));
+	for (uint32_t column = 1; column + 1 < plan->columns; column += LARGEST) {
+		if (work->depths)
+			compare_depths(work, column, row);
+		divide(work, block_row, leaf_at(column, row, LARGEST));
+	}
 }
 
 static bool reserve(struct merge *merge, const struct plan *plan)
@@ -162,13 +223,20 @@ static bool reserve(struct merge *merge, const struct plan *plan)
 	if (vertices > merge->capacity) {
 		merge_finish(merge);
 		merge->used = malloc(vertices);
+		merge->flat = calloc(vertices, 1);
+		merge->depths = calloc(vertices, sizeof(*merge->depths));
 		merge->leaves = malloc(vertices * sizeof(*merge->leaves));
 		/* At most as many as vertices: there are at least two in a row. */
 		merge->rows = malloc((vertices / (2 * LARGEST) + 2) * sizeof(*merge->rows));
-		if (!merge->used || !merge->leaves || !merge->rows)
+		if (!merge->used || !merge->flat || !merge->depths || !merge->leaves || !merge->rows)
 			return false;
 		merge->capacity = vertices;
 	}
+	if (merge->width != plan->width || merge->height != plan->height || merge->cell != plan->cell)
+		memset(merge->flat, 0, vertices);
+	merge->width = plan->width;
+	merge->height = plan->height;
+	merge->cell = plan->cell;
 	memset(merge->used, 0, vertices);
 	return true;
 }
@@ -226,6 +294,8 @@ static void count_row(void *context, uint32_t block_row, uint32_t thread)
 		count += corners == 4 ? 6 : 3 * corners;
 	}
 	row->indices = count;
+	if (work->depths)
+		keep_depths(work, block_row);
 }
 
 static void emit_row(void *context, uint32_t block_row, uint32_t thread)
@@ -244,7 +314,7 @@ uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float dis
 	/* Depth matters only where triangles lie over each other. */
 	const struct tolerance tolerance = {displacement_tolerance, plan->folded ? DEPTH_TOLERANCE : INFINITY};
 	const uint32_t rows = 1 + (plan->rows - 2 + LARGEST - 1) / LARGEST;
-	struct work work = {merge, plan, tolerance, indices};
+	struct work work = {merge, plan, tolerance, plan->folded > 0, indices};
 	if (!reserve(merge, plan))
 		return 0;
 	pool_run(pool, divide_row, &work, rows);
@@ -262,6 +332,8 @@ uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float dis
 void merge_finish(struct merge *merge)
 {
 	free(merge->used);
+	free(merge->flat);
+	free(merge->depths);
 	free(merge->leaves);
 	free(merge->rows);
 	*merge = (struct merge){0};

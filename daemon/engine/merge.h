@@ -15,7 +15,7 @@
 #include "daemon/engine/plan.h"
 
 struct merge_leaf {
-	uint32_t column, row, size; /* in cells */
+	uint16_t column, row, size; /* in cells */
 };
 
 /* The leaves of a row of blocks, the largest ones there are; the outermost row of cells is one by itself. */
@@ -24,12 +24,20 @@ struct merge_row {
 	uint32_t indices; /* how many, then where they go */
 };
 
+/* Sizes or-ed, of 2, 4 and 8 cells: of blocks that are flat whatever their depths are, and of those that are with them.
+ */
+#define MERGE_FLAT(size) (size)
+#define MERGE_FLAT_DEPTHS(size) ((size) << 4)
+
 /* Memory that is kept from frame to frame; zeroed at first. */
 struct merge {
 	uint8_t *used;             /* by vertex: a corner of some leaf */
+	uint8_t *flat;             /* by first vertex: MERGE_FLAT() of the blocks that are known to be flat at rest */
+	float *depths;             /* by vertex: those that MERGE_FLAT_DEPTHS() is of */
 	struct merge_leaf *leaves; /* those of a row of blocks begin where its first row of cells does */
 	struct merge_row *rows;
 	uint32_t capacity;
+	uint32_t width, height, cell; /* of the plans that `flat` is of: positions depend on nothing else */
 };
 
 struct pool;

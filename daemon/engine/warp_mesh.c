@@ -67,7 +67,8 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float toler
 uint64_t warp_mesh_bytes(const struct warp_mesh *mesh)
 {
 	const uint64_t of_triangle = 9 * sizeof(uint32_t) + sizeof(*mesh->wildness) + sizeof(*mesh->kinds);
-	const uint64_t of_vertex = sizeof(*mesh->merge.leaves) + sizeof(*mesh->merge.used);
+	const uint64_t of_vertex = sizeof(*mesh->merge.leaves) + sizeof(*mesh->merge.used) + sizeof(*mesh->merge.flat) +
+							   sizeof(*mesh->merge.depths);
 	return of_triangle * (mesh->capacity / 3) + of_vertex * mesh->merge.capacity + mesh->folds.capacity +
 		   mesh->low.capacity + mesh->levels.capacity;
 }
