@@ -59,6 +59,14 @@ static void watch_place(struct reload *reload, struct reload_place *place, const
 		set_timer(reload); /* it came before the one above was watched */
 }
 
+static bool is_above(const struct reload *reload, int watch)
+{
+	for (unsigned i = 0; i < reload->above_count; i++)
+		if (reload->above[i] == watch)
+			return true;
+	return false;
+}
+
 /* Those above the folder of the file, the root apart, which stays. One that may not be watched is left out. */
 static void watch_above(struct reload *reload, const char *file)
 {
@@ -71,7 +79,7 @@ static void watch_above(struct reload *reload, const char *file)
 		if (strcmp(folder, "./") == 0 || strcmp(folder, "/") == 0)
 			break;
 		const int watch = inotify_add_watch(reload->watch_fd, folder, IN_MOVE_SELF | IN_ONLYDIR | IN_MASK_ADD);
-		if (watch >= 0)
+		if (watch >= 0 && !is_above(reload, watch)) /* files share most of them */
 			reload->above[reload->above_count++] = watch;
 	}
 }
@@ -83,14 +91,6 @@ static void add_place(struct reload *reload, const char *path)
 		return;
 	watch_place(reload, &reload->places[reload->place_count++], path);
 	watch_above(reload, path);
-}
-
-static bool is_above(const struct reload *reload, int watch)
-{
-	for (unsigned i = 0; i < reload->above_count; i++)
-		if (reload->above[i] == watch)
-			return true;
-	return false;
 }
 
 static bool is_watched(const struct reload *reload, int watch)

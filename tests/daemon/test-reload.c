@@ -317,6 +317,39 @@ static void test_folders(void)
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 }
 
+/* Many files in one folder that lies deep leave room for another one's folders. */
+static void test_many_files(void)
+{
+	char deep[160], names[7][192], outer[144], file[160], away[144];
+	const char *arguments[17] = {NULL};
+	int used = snprintf(deep, sizeof(deep), "%s", fixture.folder);
+	for (unsigned i = 0; i < 9; i++) {
+		used += snprintf(deep + used, sizeof(deep) - (size_t)used, "/%u", i);
+		CHECK_INT(mkdir(deep, 0700), 0);
+	}
+	for (unsigned i = 0; i < 7; i++) {
+		snprintf(names[i], sizeof(names[i]), "-%s/%u", deep, i);
+		arguments[2 * i] = "--config";
+		arguments[2 * i + 1] = names[i];
+	}
+	snprintf(outer, sizeof(outer), "%s/many", fixture.folder);
+	snprintf(away, sizeof(away), "%s/elsewhere", fixture.folder);
+	snprintf(file, sizeof(file), "-%s/many/inner/file", fixture.folder);
+	arguments[14] = "--config";
+	arguments[15] = file;
+	CHECK_INT(mkdir(outer, 0700), 0);
+	snprintf(deep, sizeof(deep), "%s/inner", outer);
+	CHECK_INT(mkdir(deep, 0700), 0);
+	write_file(file + 1, "cell = 35\n");
+	fixture_start(&fixture, arguments);
+	fd = raw_greet(fixture.socket);
+	CHECK(cell_becomes(35));
+	CHECK_INT(rename(outer, away), 0);
+	CHECK(cell_becomes(8));
+	close(fd);
+	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
+}
+
 int main(int argc, char **argv)
 {
 	const char *const arguments[] = {"--config", config, NULL};
@@ -354,6 +387,7 @@ int main(int argc, char **argv)
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 	RUN(test_missing);
 	RUN(test_folders);
+	RUN(test_many_files);
 	fixture_finish(&fixture);
 	return test_result();
 }
