@@ -309,6 +309,7 @@ static void test_limits(void)
 	CHECK_INT(show(&pair, 0, false, &error), -EBUSY);
 	CHECK(strstr(error.text, "memory") != NULL);
 	CHECK_INT(show(&pair, 1, true, &error), 0);
+	CHECK_INT(show(&pair, 1, false, &error), -EBUSY);
 	CHECK_INT(show(&pair, 2, true, &error), -EBUSY);
 	CHECK(strstr(error.text, "2 pictures") != NULL);
 	CHECK_INT(show(&pair, 2, false, &error), 0);

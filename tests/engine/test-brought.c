@@ -127,6 +127,22 @@ static uint32_t make_texture(void)
 	return texture;
 }
 
+#define MARGIN 9u
+#define LARGER_WIDTH (WIDTH + 2 * MARGIN)
+#define LARGER_BYTES ((size_t)4 * LARGER_WIDTH * (HEIGHT + 2 * MARGIN))
+
+/* One that is larger than the picture, which has its place in the middle. */
+static struct engine_image make_larger(void)
+{
+	static uint8_t pixels[LARGER_BYTES];
+	const uint32_t texture = make_texture();
+	memset(pixels, 0x5a, LARGER_BYTES);
+	gl.bind_texture(GL_TEXTURE_2D, texture);
+	gl.tex_image(GL_TEXTURE_2D, 0, GL_RGBA, LARGER_WIDTH, HEIGHT + 2 * MARGIN, 0, GL_BGRA, GL_UNSIGNED_INT_8_8_8_8_REV,
+				 pixels);
+	return (struct engine_image){.texture = texture, .texture_x = MARGIN, .texture_y = MARGIN};
+}
+
 /* As the other context sees it. */
 static void look(uint32_t texture, uint8_t *pixels)
 {
@@ -219,21 +235,34 @@ static void move_patch(const struct picture *picture, uint32_t frame)
 		}
 }
 
+/* The picture, and nothing around it has been written to. */
+static bool shows(const struct engine_image *target, const uint8_t *picture)
+{
+	static uint8_t left[LARGER_BYTES], want[LARGER_BYTES];
+	const size_t stride = 4 * (size_t)(WIDTH + 2 * target->texture_x);
+	const size_t bytes = stride * (HEIGHT + 2 * target->texture_y);
+	look(target->texture, left);
+	memset(want, 0x5a, bytes);
+	for (size_t y = 0; y < HEIGHT; y++)
+		memcpy(want + (y + target->texture_y) * stride + 4 * (size_t)target->texture_x, picture + 4 * WIDTH * y,
+			   4 * WIDTH);
+	return memcmp(left, want, bytes) == 0;
+}
+
 /* One of the textures shows a picture, to the bit as it is read back; some have been drawn over, which is said. */
 static void check_texture(struct engine *engine, struct engine_image *target, uint32_t step)
 {
-	static uint8_t read[BYTES], left[BYTES];
+	static uint8_t read[BYTES];
 	const struct engine_request request = {step % 3 ? ENGINE_SHOW_IN_BETWEEN : ENGINE_SHOW_REAL, 0.25 * (step % 4)};
 	struct engine_image image = {.data = read, .stride = (size_t)4 * WIDTH};
 	struct error error = {""};
 	target->holds = step % 11 == 10 ? 0 : target->holds;
 	CHECK_INT(engine_render(engine, &request, target, &error), 0);
-	look(target->texture, left);
 	CHECK_INT(engine_render(engine, &request, &image, &error), 0);
-	CHECK(memcmp(read, left, BYTES) == 0);
+	CHECK(shows(target, read));
 }
 
-/* Tiles that a texture has are not copied to it again, whichever of several has its turn. */
+/* Tiles that a texture has are not copied to it again, whichever of several, one of them larger, has its turn. */
 static void test_textures_in_turn(void)
 {
 	const struct engine_begin_params begin = {.n = 3, .last_phase = -1.0};
@@ -245,7 +274,8 @@ static void test_textures_in_turn(void)
 	picture_init(&picture, WIDTH, HEIGHT, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION | PICTURE_DEPTH | PICTURE_UI);
 	picture_fill_random(&picture, PURSUIT_ROLE_COLOR, 9);
 	memset(picture_row(&picture, PURSUIT_ROLE_UI, 50), 0x60, (size_t)2 * WIDTH);
-	for (uint32_t i = 0; i < TEXTURES; i++)
+	targets[0] = make_larger();
+	for (uint32_t i = 1; i < TEXTURES; i++)
 		targets[i].texture = make_texture();
 	for (uint32_t frame = 0; frame < 24; frame++) {
 		move_patch(&picture, frame / 2);

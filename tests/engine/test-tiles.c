@@ -389,6 +389,38 @@ static void test_hash_of_tiles(void)
 	}
 }
 
+static void swap_pixels(uint8_t *a, uint8_t *b, size_t pixels)
+{
+	for (size_t i = 0; i < 4 * pixels; i++) {
+		const uint8_t byte = a[i];
+		a[i] = b[i];
+		b[i] = byte;
+	}
+}
+
+/* The same pixels at other places are another tile: rows, pixels beside each other, and those of a pair. */
+static void test_hash_of_places(void)
+{
+	static uint8_t pixels[4 * TILE_PIXELS];
+	static struct tile_key key;
+	struct error error;
+	uint32_t random = 4;
+	CHECK_INT(tile_key_make(&key, &error), 0);
+	for (size_t i = 0; i < sizeof(pixels); i++)
+		pixels[i] = (uint8_t)(picture_random(&random) >> 8);
+	const struct tile_hash want = hash_of(&key, pixels, TILE_WIDTH, TILE_HEIGHT);
+	CHECK(want.halves[0] != want.halves[1]);
+	for (uint32_t k = 0; k < 300; k++) {
+		const uint32_t y = k % (TILE_HEIGHT - 1), x = k % (TILE_WIDTH / 2), what = k % 3;
+		const uint32_t away = what == 0 ? TILE_WIDTH : what == 1 ? 1 : TILE_WIDTH / 2;
+		uint8_t *at = pixels + 4 * (TILE_WIDTH * y + (what ? x : 0));
+		swap_pixels(at, at + 4 * away, what ? 1 : TILE_WIDTH);
+		const struct tile_hash changed = hash_of(&key, pixels, TILE_WIDTH, TILE_HEIGHT);
+		swap_pixels(at, at + 4 * away, what ? 1 : TILE_WIDTH);
+		CHECK(changed.halves[0] != want.halves[0] && changed.halves[1] != want.halves[1]);
+	}
+}
+
 static void test_refuses(void)
 {
 	struct error error = {""};
@@ -411,6 +443,7 @@ int main(void)
 	RUN(test_images_in_turn);
 	RUN(test_bounds_of_tiles);
 	RUN(test_hash_of_tiles);
+	RUN(test_hash_of_places);
 	RUN(test_refuses);
 	return test_result();
 }

@@ -100,6 +100,17 @@ static void test_order_after_a_loss(void)
 		}
 }
 
+/* And the error is as much larger than without one as the formula says. */
+static void test_size_after_a_loss(void)
+{
+	for (uint32_t gap = 2; gap <= 6; gap++)
+		for (size_t s = 0; s < 5; s++) {
+			const double p = steps[s], t = 1.0 / 60, want = (2.0 * p + 3.0 * gap + 1.0) / (2.0 * p + 4.0);
+			const double lost = error_after(MOTION_PATH_FAN, ENGINE_MOTION_QUADRATIC, t, gap, p);
+			CHECK_NEAR(lost / error_of(MOTION_PATH_FAN, ENGINE_MOTION_QUADRATIC, t, p), want, 0.02 * want);
+		}
+}
+
 /* At a fixed interval the error follows p (p + 1) and p (p + 1)(p + 2), not p and p^2: backward motion is a secant. */
 static void test_step(void)
 {
@@ -141,6 +152,7 @@ int main(int argc, char **argv)
 	RUN(test_lost_frames);
 	RUN(test_order_of_convergence);
 	RUN(test_order_after_a_loss);
+	RUN(test_size_after_a_loss);
 	RUN(test_step);
 	print_table();
 	CHECK(table_finish(&table, argc, argv));
