@@ -103,7 +103,7 @@ static double largest_margin(const struct timeline *timeline, uint32_t first, ui
 static void draw_overview(FILE *out, const struct timeline *timeline, double y)
 {
 	double most = largest_margin(timeline, 0, timeline->count);
-	text(out, 20, y + 14, "font-weight=\"bold\"", "all vblanks");
+	text(out, 20, y + 16, "fill=\"#444\"", "all vblanks");
 	double scale = draw_scale(out, y, OVERVIEW_HEIGHT - 30, most);
 	uint32_t columns = timeline->count < WIDTH ? timeline->count : WIDTH;
 	double width = (double)WIDTH / (columns ? columns : 1);

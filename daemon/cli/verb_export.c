@@ -61,11 +61,12 @@ static bool check(const char *verb, const struct export_options *options)
 	const struct export_params *params = &options->params;
 	const char *const patterns[] = {params->color, params->ui, params->depth, params->motion};
 	static const char *const names[] = {"--color", "--ui", "--depth", "--motion"};
+	static const char *const endings[] = {".png", ".png", ".pfm", ".pfm"};
 	struct error error;
 	bool any = params->video != NULL;
 	for (size_t i = 0; i < sizeof(patterns) / sizeof(patterns[0]); i++) {
 		any |= patterns[i] != NULL;
-		if (patterns[i] && pattern_check(names[i], patterns[i], &error) < 0)
+		if (patterns[i] && pattern_check_written(names[i], patterns[i], endings[i], &error) < 0)
 			return args_wrong(verb, "%s", error.text), false;
 	}
 	if (!any)

@@ -119,7 +119,7 @@ static int check_options(struct replay_options *options, struct replay *replay)
 	if (!read_limits(options))
 		return args_wrong(VERB, "--fail-under is %s, must be such as psnr=34 or psnr=34,ssim=0.95",
 						  options->fail_under);
-	if (options->write_frames && pattern_check("--write-frames", options->write_frames, &error) < 0)
+	if (options->write_frames && pattern_check_written("--write-frames", options->write_frames, ".png", &error) < 0)
 		return args_wrong(VERB, "%s", error.text);
 	if (options->expect_tolerance && !options->expect)
 		return args_wrong(VERB, "--expect-tolerance goes with --expect");

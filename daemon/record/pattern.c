@@ -8,6 +8,7 @@
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <unistd.h>
 
 /* The conversion at `at` (which points behind the %): its length without the %, 0 if it is none that we take. */
@@ -54,6 +55,16 @@ int pattern_check(const char *option, const char *pattern, struct error *error)
 		return error_set(error, -EINVAL, "%s: pattern is %zu bytes, must be at most %d", option, strlen(pattern),
 						 PATTERN_MAX_PATH - 16);
 	return 0;
+}
+
+int pattern_check_written(const char *option, const char *pattern, const char *ending, struct error *error)
+{
+	const int result = pattern_check(option, pattern, error);
+	const size_t length = strlen(pattern), least = strlen(ending);
+	if (result == 0 && (length < least || strcasecmp(pattern + length - least, ending) != 0))
+		return error_set(error, -EINVAL, "%s: pattern '%s': must end in %s, the format that is written", option,
+						 pattern, ending);
+	return result;
 }
 
 /* Copies up to `end` with %% made one %. */

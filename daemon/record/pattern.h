@@ -23,6 +23,9 @@
  */
 int pattern_check(const char *option, const char *pattern, struct error *error);
 
+/* The same for images that are written in one format, whose names end in `ending`, ".png", in either case. */
+int pattern_check_written(const char *option, const char *pattern, const char *ending, struct error *error);
+
 /* The name for a number, of a pattern that was checked; false if it is too long for a path. */
 bool pattern_name(const char *pattern, uint64_t number, char name[PATTERN_MAX_PATH]);
 
