@@ -30,6 +30,16 @@ uint64_t scene_source_time(const struct arg_rate *rate, uint64_t index)
 	return whole * period + (uint64_t)((unsigned __int128)rest * period / rate->numerator);
 }
 
+void scene_source_names(const char *names[SCENE_SOURCE_NAMES])
+{
+	size_t count = 0;
+	for (const struct scene_info *scene = scene_list(); scene->name; scene++) {
+		assert(count + 1 < SCENE_SOURCE_NAMES);
+		names[count++] = scene->name;
+	}
+	names[count] = NULL;
+}
+
 void scene_source_unknown(const char *name, struct error *error)
 {
 	size_t used = (size_t)snprintf(error->text, sizeof(error->text), "there is no scene %.60s; there are", name);

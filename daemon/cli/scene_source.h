@@ -74,6 +74,10 @@ const char *scene_source_renderer(struct scene_source *source, bool *software);
 /* Nanoseconds from frame 0 to frame `index` at a rate, rounded down; exact. */
 uint64_t scene_source_time(const struct arg_rate *rate, uint64_t index);
 
+/* The names of all scenes, ended by NULL: choices of an option. */
+#define SCENE_SOURCE_NAMES 16
+void scene_source_names(const char *names[SCENE_SOURCE_NAMES]);
+
 /* "there is no scene x; there are a, b, c" */
 void scene_source_unknown(const char *name, struct error *error);
 

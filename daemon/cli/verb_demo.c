@@ -67,8 +67,10 @@ struct demo {
 
 static bool read_options(struct demo_options *options, int argc, char **argv, int *status)
 {
+	const char *scenes[SCENE_SOURCE_NAMES];
+	scene_source_names(scenes);
 	const struct arg_row rows[] = {
-		{"scene", ARG_TEXT, &options->scene, 0, 0, NULL, "NAME", "what the client renders (colonnade)"},
+		{"scene", ARG_TEXT, &options->scene, 0, 0, scenes, "NAME", "what the client renders (colonnade)"},
 		{"seconds", ARG_REAL, &options->seconds, 0.5, 86400, NULL, "S", "how long (60); Ctrl-C ends it early"},
 		{"size", ARG_SIZE, &options->size, 0, 0, NULL, "WxH", "of the picture; 640x360 on a CPU, 1920x1080 on a GPU"},
 		{"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F",

@@ -38,8 +38,10 @@ struct record_options {
 
 static bool read_options(struct record_options *options, int argc, char **argv, int *status)
 {
+	const char *scenes[SCENE_SOURCE_NAMES];
+	scene_source_names(scenes);
 	const struct arg_row rows[] = {
-		{"scene", ARG_TEXT, &options->scene, 0, 0, NULL, "NAME",
+		{"scene", ARG_TEXT, &options->scene, 0, 0, scenes, "NAME",
 		 "a built-in scene; without it, what a running daemon receives"},
 		{"size", ARG_SIZE, &options->size, 0, 0, NULL, "WxH", "of the scene's pictures (640x360)"},
 		{"fps", ARG_RATE, &options->rate, 0, 0, NULL, "F", "the scene's frames a second (60)"},

@@ -15,8 +15,10 @@
 
 static bool read_options(struct report_options *options, int argc, char **argv, int *status)
 {
+	const char *scenes[SCENE_SOURCE_NAMES];
+	scene_source_names(scenes);
 	const struct arg_row rows[] = {
-		{"scenes", ARG_TEXT, &options->scenes, 0, 0, NULL, "LIST", "built-in scenes, separated by commas; all, none"},
+		{"scenes", ARG_TEXT, &options->scenes, 0, 0, scenes, "LIST", "built-in scenes, separated by commas; all, none"},
 		{"recordings", ARG_TEXT, &options->recordings, 0, 0, NULL, "LIST",
 		 "recordings, separated by commas; each frame predicts the next"},
 		{"methods", ARG_TEXT, &options->methods, 0, 0, option_find("method")->choices, "LIST",

@@ -100,6 +100,7 @@ class Pages(common.Case):
         self.assertEqual(self.complete("pursuit", "replay", "--pre"), ["--predict"])
         self.assertEqual(self.complete("pursuit", "replay", "--blur", ""), ["doubtful", "everywhere", "off"])
         self.assertEqual(self.complete("pursuit", "replay", "--method", "adap"), ["adaptive-grid"])
+        self.assertEqual(self.complete("pursuit", "demo", "--scene", "t"), ["tower", "trees"])
         self.assertEqual(self.complete("pursuit", "report", "--methods", "mc"), ["mcif"])
         self.assertEqual(self.complete("pursuitd", "--present", ""), ["headless", "glfw", "kms"])
         self.assertEqual(self.complete("pursuit", "set", "context", "=", ""), ["auto", "egl", "osmesa", "cpu"])
