@@ -2,11 +2,12 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Blocks on their way up, with a GPU that carries out its commands late, at random: none is written to while that GPU
- * may still read it, though it hangs and gives no fences, and there are no more of them than were asked for.
+ * Blocks on their way up and down, with a GPU that carries out its commands late, at random: none is written to while
+ * that GPU may still read it, though it hangs and gives no fences, and there are no more of them than were asked for.
  */
 #include "tests/test.h"
 
+#include "daemon/engine/gl/readback.h"
 #include "daemon/engine/gl/stream.h"
 #include "tests/engine/picture.h"
 
@@ -19,8 +20,9 @@ static struct {
 	uint64_t read[BUFFERS + 1]; /* by buffer: the last command that reads its memory of now */
 	size_t bytes[BUFFERS + 1];
 	GLuint made, bound;
+	bool sound; /* it does not hang, and gives fences */
 	uint32_t hangs, fenceless, waits;
-	uint8_t memory[4096];
+	uint8_t memory[READBACK_BLOCK];
 } gpu;
 
 static uint32_t pick(uint32_t count)
@@ -43,7 +45,7 @@ static void APIENTRY delete_buffers(GLsizei count, const GLuint *buffers)
 
 static void APIENTRY bind_buffer(GLenum target, GLuint buffer)
 {
-	CHECK_INT(target, GL_PIXEL_UNPACK_BUFFER);
+	CHECK(target == GL_PIXEL_UNPACK_BUFFER || target == GL_PIXEL_PACK_BUFFER);
 	gpu.bound = buffer;
 }
 
@@ -58,8 +60,7 @@ static void APIENTRY buffer_data(GLenum target, GLsizeiptr size, const void *dat
 
 static void *APIENTRY map(GLenum target, GLintptr offset, GLsizeiptr length, GLbitfield access)
 {
-	(void)target;
-	CHECK(access & GL_MAP_UNSYNCHRONIZED_BIT);
+	CHECK(target == GL_PIXEL_PACK_BUFFER || access & GL_MAP_UNSYNCHRONIZED_BIT);
 	CHECK((size_t)(offset + length) <= gpu.bytes[gpu.bound]);
 	CHECK(gpu.read[gpu.bound] <= gpu.done);
 	return gpu.memory;
@@ -84,11 +85,28 @@ static void APIENTRY tex_sub_image(GLenum target, GLint level, GLint x, GLint y,
 	gpu.read[gpu.bound] = ++gpu.asked;
 }
 
+static void APIENTRY pixel_store(GLenum name, GLint value)
+{
+	(void)name;
+	(void)value;
+}
+
+static void APIENTRY read_pixels(GLint x, GLint y, GLsizei width, GLsizei height, GLenum format, GLenum type,
+								 void *pixels)
+{
+	(void)x;
+	(void)y;
+	(void)format;
+	(void)type;
+	CHECK((size_t)pixels + 4 * (size_t)width * (size_t)height <= gpu.bytes[gpu.bound]);
+	gpu.asked++;
+}
+
 static GLsync APIENTRY fence(GLenum condition, GLbitfield flags)
 {
 	(void)condition;
 	(void)flags;
-	const bool none = pick(20) == 0;
+	const bool none = !gpu.sound && pick(20) == 0;
 	gpu.fenceless += none;
 	/* A fence is the number of the command that it stands behind. */
 	return none ? NULL : (GLsync)(uintptr_t)(gpu.asked + 1);
@@ -102,7 +120,7 @@ static void APIENTRY delete_sync(GLsync sync)
 static GLenum APIENTRY wait(GLsync sync, GLbitfield flags, GLuint64 timeout)
 {
 	const uint64_t command = (uint64_t)(uintptr_t)sync - 1;
-	const bool hangs = pick(10) == 0;
+	const bool hangs = !gpu.sound && pick(10) == 0;
 	CHECK(timeout == 0 || flags & GL_SYNC_FLUSH_COMMANDS_BIT);
 	if (command <= gpu.done)
 		return GL_ALREADY_SIGNALED;
@@ -122,6 +140,8 @@ static const struct gl gl = {.GenBuffers = gen_buffers,
 							 .MapBufferRange = map,
 							 .UnmapBuffer = unmap,
 							 .TexSubImage2D = tex_sub_image,
+							 .PixelStorei = pixel_store,
+							 .ReadPixels = read_pixels,
 							 .FenceSync = fence,
 							 .DeleteSync = delete_sync,
 							 .ClientWaitSync = wait};
@@ -175,9 +195,53 @@ static void test_who_waits(void)
 	stream_finish(&stream, &gl);
 }
 
+/* ---- down ---- */
+
+#define WIDTH 1920u
+#define HEIGHT 1080u
+
+/* Tiles that lie apart in each row: as many rectangles as there can be. */
+static void scatter(struct tiles *tiles)
+{
+	CHECK(tiles_begin(tiles, WIDTH, HEIGHT, 64, 32));
+	for (uint32_t i = 0; i < tiles->columns * tiles->rows; i++)
+		tiles->marked[i] = i % tiles->columns % 4 == i / tiles->columns % 2;
+}
+
+/* Two pictures in pieces under way take no more blocks than two whole ones, however many were before; nobody waits. */
+static void test_pieces(void)
+{
+	static uint8_t data[2][4 * WIDTH * HEIGHT];
+	static struct readback readback;
+	struct tiles tiles = {.marked = NULL};
+	struct error error = {""};
+	memset(&gpu, 0, sizeof(gpu));
+	gpu.sound = true;
+	readback.buffered = true;
+	scatter(&tiles);
+	for (uint32_t frame = 0; frame < 30; frame++) {
+		struct arrival arrivals[2] = {{.missing = 0}};
+		uint64_t bytes = 0;
+		gpu.waits = 0;
+		for (int i = 0; i < 2; i++) {
+			const struct readback_image image = {data[i], 4 * (size_t)WIDTH, &tiles};
+			CHECK_INT(readback_ask(&readback, &gl, &image, &arrivals[i], true, &bytes, &error), 0);
+		}
+		CHECK_INT(gpu.waits, 0);
+		CHECK(bytes > 0 && bytes < 2 * sizeof(data[0]) / 3);
+		CHECK(readback_bytes(&readback) <= 2 * 16 * READBACK_BLOCK);
+		for (int i = 0; i < 2; i++)
+			CHECK_INT(readback_receive(&readback, &gl, &arrivals[i], &error), 0);
+		CHECK(!arrivals[0].missing && !arrivals[1].missing && !readback.count);
+	}
+	readback_finish(&readback, &gl);
+	tiles_finish(&tiles);
+}
+
 int main(void)
 {
 	RUN(test_none_is_overwritten);
 	RUN(test_who_waits);
+	RUN(test_pieces);
 	return test_result();
 }

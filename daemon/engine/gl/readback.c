@@ -202,9 +202,9 @@ static uint32_t allowed(const struct readback *readback, const struct tiles *til
 {
 	const uint32_t most = (uint32_t)(READBACK_BLOCK / (4 * (size_t)tiles->width));
 	const uint32_t asked = (tiles->height + most - 1) / most;
-	const uint32_t made = buffers(readback) > READBACK_BLOCKS ? buffers(readback) : READBACK_BLOCKS;
-	const uint32_t wanted = ahead && readback->count + asked > made ? readback->count + asked : made;
-	return wanted < READBACK_MOST ? wanted : READBACK_MOST;
+	const uint32_t wanted = ahead ? readback->count + asked : buffers(readback);
+	const uint32_t least = wanted > READBACK_BLOCKS ? wanted : READBACK_BLOCKS;
+	return least < READBACK_MOST ? least : READBACK_MOST;
 }
 
 int readback_ask(struct readback *readback, const struct gl *gl, const struct readback_image *image,

@@ -25,8 +25,8 @@
 /* And at most, with others under way: two of 3840x2160; of larger ones some rows are waited for by whoever asks. */
 #define READBACK_MOST 128u
 
-/* Rectangles of a block. */
-#define READBACK_PIECES 16u
+/* Rectangles of a block: as many tiles as fill it. */
+#define READBACK_PIECES 64u
 
 /* A rectangle in a buffer, one row after another, and where it belongs. */
 struct readback_piece {
