@@ -458,7 +458,7 @@ static void show_both(struct engine *engine, const struct picture *picture, uint
 	show(engine, picture, ENGINE_SHOW_IN_BETWEEN, 1.0 / 3, out + 4 * (size_t)picture->width * picture->height);
 }
 
-/* Whatever fails while a frame of another size is taken and shown: the next one is shown as if nothing had. */
+/* What fails while a frame of another size is taken and shown is told, and the next is shown as if nothing had. */
 static void check_failures(enum engine_analysis analysis, bool shrinks)
 {
 	struct engine_params own = params;
@@ -484,7 +484,8 @@ static void check_failures(enum engine_analysis analysis, bool shrinks)
 		fails_at = 0;
 		show_both(engine, shrinks ? &large : &small, out);
 		fails_at = ++count;
-		failed = try_all(engine, fails_with, out) || fails_at == 0;
+		failed = try_all(engine, fails_with, out);
+		CHECK_INT(failed, fails_at == 0);
 		fails_at = 0;
 		show_both(engine, &large, out);
 		const bool same = memcmp(out, want, bytes) == 0;

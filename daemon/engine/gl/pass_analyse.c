@@ -238,7 +238,8 @@ static int take_found(struct engine *engine, const struct plan_job *job, struct 
 		.vertices = (const struct plan_vertex *)(const void *)(words + first_vertex(job)),
 	};
 	int result = plan_job_end(&engine->plan, engine->job.frame, job, &found, error);
-	gl->UnmapBuffer(GL_SHADER_STORAGE_BUFFER);
+	if (!gl->UnmapBuffer(GL_SHADER_STORAGE_BUFFER) && result == 0)
+		result = error_set(error, -EIO, "the renderer lost what the analysis found");
 	engine->report.bytes_down += bytes;
 	return result;
 }
