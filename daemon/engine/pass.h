@@ -30,6 +30,9 @@ int planes_prepare(struct engine *engine, int *color, int *ui, struct error *err
 /* Whether rows y to y + count - 1 of the planes may have changed since the frame before. */
 bool planes_changed(const struct engine *engine, uint32_t y, uint32_t count);
 
+/* The upload has found that they have not, though nobody said so: the frame counts as one without damage. */
+void planes_find_unchanged(struct engine *engine);
+
 /* Notes that something was left out; the first reason given for a name stays. */
 void report_leave_out(struct engine_report *report, const char *name, const char *reason);
 void report_begin(struct engine_report *report, uint64_t frame_id, const char *time_source);

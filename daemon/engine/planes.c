@@ -66,6 +66,14 @@ bool planes_changed(const struct engine *engine, uint32_t y, uint32_t count)
 	return !damage->known;
 }
 
+void planes_find_unchanged(struct engine *engine)
+{
+	engine->damage.known = engine->damage.found = true;
+	engine->damage.count = 0;
+	engine->content = engine->content_before;
+	report_leave_out(&engine->report, "upload", "unchanged");
+}
+
 int planes_prepare(struct engine *engine, int *color, int *ui, struct error *error)
 {
 	const struct pursuit_frame_header *header = &engine->job.frame->header;

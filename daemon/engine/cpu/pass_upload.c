@@ -176,11 +176,8 @@ static void conclude_look(struct engine *engine, struct intake *intake)
 		intake->not_before = LOOK_AGAIN_AFTER;
 	if (!intake->compares || differs)
 		return;
-	engine->damage.known = engine->damage.found = true;
-	engine->damage.count = 0;
-	engine->content = engine->content_before;
+	planes_find_unchanged(engine);
 	engine->report.bytes_up -= intake->bytes;
-	report_leave_out(&engine->report, "upload", "unchanged");
 }
 
 /* If there is none, nobody knows what is where. */

@@ -167,12 +167,8 @@ static int upload(struct engine *engine, struct layer *layer, struct error *erro
 /* Nothing differs from a frame that did not move: it rests. */
 static void conclude_look(struct engine *engine)
 {
-	if (!engine->damage.comparable || engine->damage.known || !engine->rested)
-		return;
-	engine->damage.known = engine->damage.found = true;
-	engine->damage.count = 0;
-	engine->content = engine->content_before;
-	report_leave_out(&engine->report, "upload", "unchanged");
+	if (engine->damage.comparable && !engine->damage.known && engine->rested)
+		planes_find_unchanged(engine);
 }
 
 static struct layer layer_of(struct engine *engine, enum picture_id id, int index)
