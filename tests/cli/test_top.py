@@ -101,6 +101,20 @@ class Top(common.Case):
             self.assertLess(time.monotonic(), end, f"{words} is not in\n" + "\n".join(self.screen.lines))
             self.pump(0.1)
 
+    def wait_until_it_fits(self, columns, rows, seconds=60):
+        end = time.monotonic() + seconds
+        while not ("p" in "".join(self.screen.lines) and max(map(len, self.screen.lines)) <= columns
+                   and not any(self.screen.lines[rows:])):
+            self.assertLess(time.monotonic(), end, f"not within {columns}x{rows}:\n" + "\n".join(self.screen.lines))
+            self.pump(0.1)
+
+    def wait_for_pictures(self, count, seconds=60):
+        """What is shown of a daemon without clients changes once a second, with the time since it started."""
+        end = time.monotonic() + seconds
+        while len(self.pictures) < count:
+            self.assertLess(time.monotonic(), end, f"{len(self.pictures)} pictures, not {count}")
+            self.pump(0.1)
+
     def press(self, keys):
         os.write(self.master, keys.encode())
 
@@ -160,8 +174,7 @@ class Top(common.Case):
     def test_only_what_changed_is_sent(self):
         self.start(interval=200)
         self.wait_for("m method")
-        self.pump(3)
-        self.assertGreater(len(self.pictures), 3)
+        self.wait_for_pictures(5)
         first, later = len(self.pictures[0]), self.pictures[3:]
         self.assertGreater(first, 500)
         self.assertLess(max(map(len, later)), first // 2)
@@ -179,17 +192,19 @@ class Top(common.Case):
         before = len(self.pictures)
         self.pump(2)
         self.assertLessEqual(len(self.pictures) - before, 1)
+        shown = len(self.pictures)
         os.write(self.master, ANSWER)
-        self.pump(1)
-        self.assertGreater(len(self.pictures), before)
+        self.wait_for_pictures(shown + 1)
         self.press("q")
         self.ends(0)
 
     def test_a_terminal_that_answers_nothing(self):
         self.start(answering=False)
         self.wait_for("m method")
-        self.pump(1.5)
-        self.assertGreater(len(self.pictures), 2)
+        self.wait_for_pictures(4)
+        seconds = [int(shown[1]) for picture in self.pictures if (shown := re.search(rb"up (\d+) s", picture))]
+        # Each picture would take five seconds if top waited for an answer.
+        self.assertLess(min(later - earlier for earlier, later in zip(seconds, seconds[1:])), 4, seconds)
         self.press("q")
         self.ends(0)
 
@@ -200,11 +215,7 @@ class Top(common.Case):
             self.pump(0.3)
             self.screen.resize(max(columns, self.screen.columns), max(rows, self.screen.rows))
             fcntl.ioctl(self.master, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-            self.pump(1)
-            shown = "\n".join(self.screen.lines)
-            self.assertIn("p", shown)
-            self.assertLessEqual(max(len(line) for line in self.screen.lines), columns)
-            self.assertFalse(any(self.screen.lines[rows:]))
+            self.wait_until_it_fits(columns, rows)
         self.wait_for("m method")
         self.press("q")
         self.ends(0)
