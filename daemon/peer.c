@@ -36,8 +36,9 @@ int peer_open_process(int socket, pid_t pid)
 		return -1;
 	if (getsockopt(socket, SOL_SOCKET, PEER_PIDFD, &process, &size) == 0)
 		return process;
-	/* Before Linux 6.5 the one that has the number now. */
-	return (int)syscall(SYS_pidfd_open, pid, 0);
+	/* Only where there is no such option: up to Linux 6.15 it fails when the peer has ended, and its number is reused.
+	 */
+	return errno == ENOPROTOOPT ? (int)syscall(SYS_pidfd_open, pid, 0) : -1;
 }
 
 /* ---- lists ---- */

@@ -25,7 +25,7 @@ struct peer peer_of(int socket);
 
 /*
  * The process that connected `socket`, with this number, as a pidfd, which is readable once it has ended; the caller's.
- * -1: it has ended, or may not be known.
+ * -1: it has ended, or may not be known. Before Linux 6.5 it is the process that has the number now.
  */
 int peer_open_process(int socket, pid_t pid);
 
