@@ -135,7 +135,7 @@ int draw_queue(struct render *render, struct presenter_image *image, uint64_t vb
 	lab_mark_picture(render->lab, image, serial, vblank, (enum points_show)show);
 	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
 	if (result == 0)
-		render->serial = serial;
+		render->serial = render->awaited = serial;
 	if (result == 0 || result == -EBUSY)
 		render_expect_flips(render);
 	if (result == 0 && render->tees.now)

@@ -10,8 +10,9 @@
 #define AHEAD 4u
 /* After so long a pause the picture that stays is made the plain one (0.25 s at 120 Hz). */
 #define PLAIN_AFTER 30u
-/* And then the presenter sleeps, once that picture has been shown. */
+/* And then the presenter sleeps, once that picture has been shown, or after so many vblanks more if it never is. */
 #define SLEEP_AFTER (PLAIN_AFTER + 4u)
+#define SLEEP_ANYWAY 256u
 /* A picture that is to stay and misses its vblank, or finds no memory free, is drawn again so often. */
 #define STAY_TRIES 120u
 /* A presenter that is given some pictures and says nothing for so long and so many vblanks hangs. */
@@ -57,7 +58,7 @@ void render_set_tee(struct render *render, struct tee *tee)
 	tees_follow(&render->tees, tee, render->group, render->serial);
 	render->redraw |= tee != NULL; /* a picture that stays is its first one */
 	if (render->paused)
-		tees_rest(&render->tees);
+		tees_rest(&render->tees, render->awaited);
 }
 
 static void close_all_frames(struct render *render)
@@ -113,7 +114,7 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&render->grid);
 	start_pacer(render);
 	render->standby_done = render->front_plain = render->front_black = false;
-	render->hold_until_ns = render->take_again_ns = 0;
+	render->hold_until_ns = render->take_again_ns = render->awaited = 0;
 	render->real_vblank = render->next_vblank = 0;
 	render->paused = true;
 	/* Nothing was shown there yet: what stays is to be drawn, unless a frame comes first. */
@@ -250,6 +251,8 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 	/* One that came on display while all sleeps: the time since is no vblanks that were due. */
 	if (render->paused)
 		render->showing.last_target_ns = 0;
+	if (flip->serial == render->awaited)
+		render->awaited = 0;
 	tees_flip(&render->tees, flip, &render->grid);
 	if (lab_is_active(render->lab))
 		tell_lab(render, flip);
@@ -364,7 +367,14 @@ static void fall_asleep(struct render *render)
 	render->presenter->impl->pause(render->presenter);
 	render->showing.last_target_ns = 0;
 	render->paused = true;
-	tees_rest(&render->tees);
+	tees_rest(&render->tees, render->awaited);
+}
+
+/* Is the last picture on display, so that all may sleep? */
+static bool may_sleep(const struct render *render)
+{
+	const uint32_t vblanks = render->pause_vblanks;
+	return vblanks >= SLEEP_AFTER && (render->awaited == 0 || vblanks >= SLEEP_AFTER + SLEEP_ANYWAY);
 }
 
 /* Nothing is due at next_vblank: the picture stays, first as it is, then the plain one, and then all sleeps. */
@@ -387,7 +397,7 @@ static void pause_once(struct render *render)
 		draw_what_stays(render, later_of(vblank, first));
 		render->pause_vblanks = PLAIN_AFTER;
 	}
-	if (render->pause_vblanks >= SLEEP_AFTER)
+	if (may_sleep(render))
 		fall_asleep(render);
 }
 

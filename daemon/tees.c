@@ -15,6 +15,15 @@ static void close_first(struct tees *tees, uint32_t count)
 	memmove(&tees->before[0], &tees->before[count], tees->count * sizeof(tees->before[0]));
 }
 
+/* Those without a picture after this one. */
+static void close_up_to(struct tees *tees, uint64_t serial)
+{
+	uint32_t count = 0;
+	while (count < tees->count && tees->before[count].last <= serial)
+		count++;
+	close_first(tees, count);
+}
+
 void tees_follow(struct tees *tees, struct tee *tee, uint64_t group, uint64_t serial)
 {
 	if (tees->now && serial == tees->since)
@@ -45,11 +54,17 @@ void tees_flip(struct tees *tees, const struct presenter_flip *flip, const struc
 	for (uint32_t i = 0; i < tees->count; i++)
 		if (flip->serial > tees->before[i].since && flip->serial <= tees->before[i].last)
 			tee_flip(tees->before[i].tee, flip, grid);
+	if (tees->awaited != 0 && flip->serial == tees->awaited) {
+		close_up_to(tees, tees->awaited);
+		tees->awaited = 0;
+	}
 }
 
-void tees_rest(struct tees *tees)
+void tees_rest(struct tees *tees, uint64_t awaited)
 {
-	close_first(tees, tees->count);
+	tees->awaited = awaited;
+	if (awaited == 0)
+		close_first(tees, tees->count);
 }
 
 void tees_finish(struct tees *tees)

@@ -29,14 +29,18 @@ struct tees {
 		uint64_t group;       /* of the last */
 	} before[TEES_BEFORE];    /* in their order */
 	uint32_t count;
+	uint64_t awaited; /* those with no picture after this one are closed when it has been shown; 0: none */
 };
 
 /* This one (NULL: none) has what is drawn after picture `serial`, which is of `group`. */
 void tees_follow(struct tees *tees, struct tee *tee, uint64_t group, uint64_t serial);
 /* As tee_flip(), of the one whose picture it is. */
 void tees_flip(struct tees *tees, const struct presenter_flip *flip, const struct grid *grid);
-/* Nothing that was drawn is still to be shown: those before are closed. */
-void tees_rest(struct tees *tees);
+/*
+ * Of all that was drawn nothing is still to be shown once this picture has been (0: nothing at all): then those before
+ * are closed whose pictures were drawn up to it.
+ */
+void tees_rest(struct tees *tees, uint64_t awaited);
 /* Waits for all of them. */
 void tees_finish(struct tees *tees);
 

@@ -6,6 +6,8 @@
  * presenter is the headless one's memory and queue, on a virtual clock, and refuses what it is told to.
  */
 #include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -29,6 +31,10 @@ static struct {
 	unsigned refusals, refused, taken;
 	unsigned full, lacks; /* so often there is no picture to draw into; there was none */
 	uint64_t drawing_ns;  /* that a picture takes */
+	bool silent;          /* flips are told later */
+	struct presenter_flip untold[512];
+	uint32_t untold_count;
+	unsigned closed; /* tees */
 } world;
 
 static int acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
@@ -60,6 +66,13 @@ static void on_engine(void *data, const struct engine_info *info)
 	(void)info;
 }
 
+static void on_close(void *data, struct tee *tee)
+{
+	(void)data;
+	tee_destroy(&tee);
+	world.closed++;
+}
+
 static void world_init(void)
 {
 	const struct presenter_params params = {
@@ -79,7 +92,7 @@ static void world_init(void)
 							  .clock = &world.clock.clock,
 							  .log = &world.log,
 							  .stats = &world.stats,
-							  .owner = {.engine_made = on_engine}};
+							  .owner = {.engine_made = on_engine, .close_tee = on_close}};
 	CHECK_INT(render_start(render, &error), 0);
 	render_set_presenter(render, &world.pictures.presenter);
 }
@@ -90,6 +103,22 @@ static void world_finish(void)
 	pictures_finish(&world.pictures);
 	if (world.picture.memory)
 		picture_finish(&world.picture);
+}
+
+static void tell(const struct presenter_flip *flip)
+{
+	if (!world.silent)
+		render_flip(&world.render, flip);
+	else if (world.untold_count < sizeof(world.untold) / sizeof(world.untold[0]))
+		world.untold[world.untold_count++] = *flip;
+}
+
+static void tell_untold(void)
+{
+	world.silent = false;
+	for (uint32_t i = 0; i < world.untold_count; i++)
+		tell(&world.untold[i]);
+	world.untold_count = 0;
 }
 
 /* What is due within some vblanks is done, and each of them shown. */
@@ -103,8 +132,10 @@ static void run(uint32_t vblanks)
 			const uint64_t next_ns = render_step(&world.render);
 			clock_wait_until(&world.clock.clock, next_ns < vblank_ns ? next_ns : vblank_ns);
 		}
-		if (world.pictures.running && world.pictures.next_vblank <= vblank)
-			pictures_show_next(&world.pictures, vblank_ns);
+		if (world.pictures.running && world.pictures.next_vblank <= vblank) {
+			const struct presenter_flip flip = pictures_show_next(&world.pictures, vblank_ns);
+			tell(&flip);
+		}
 	}
 }
 
@@ -166,6 +197,21 @@ static void test_a_slow_picture(void)
 	}
 }
 
+/* Real frames that take many vblanks have all planned far ahead: it sleeps when the picture is there, not before. */
+static void test_slow_real_frames(void)
+{
+	for (uint64_t cost_ns = 10 * MS; cost_ns < 400 * MS; cost_ns *= 2) {
+		world_init();
+		cost_add(&world.render.real_cost, cost_ns);
+		show_boosted();
+		run(200);
+		CHECK_INT(world.taken, 1);
+		CHECK(world.pictures.flips.has_front && world.pictures.flips.front.serial == world.render.serial);
+		CHECK(world.render.paused && !world.pictures.running);
+		world_finish();
+	}
+}
+
 static void test_a_boosted_picture_does_not_stay(void)
 {
 	world_init();
@@ -191,6 +237,71 @@ static void test_a_presenter_that_takes_nothing(void)
 	run(400);
 	CHECK_INT(world.refused, refused);
 	world_finish();
+}
+
+static struct tee *make_tee(const char *folder, const char *name, char path[64])
+{
+	struct error error = {""};
+	snprintf(path, 64, "%s/%s.y4m", folder, name);
+	struct tee *tee = tee_create(&(struct tee_params){.path = path, .log = &world.log}, &error);
+	CHECK(tee != NULL);
+	return tee;
+}
+
+/* The serials of the pictures in the file, "1 2 "; takes the file away. */
+static const char *pictures_in(const char *path)
+{
+	static char list[256];
+	char times[80], line[256];
+	uint64_t serial, last = 0;
+	list[0] = 0;
+	snprintf(times, sizeof(times), "%s.csv", path);
+	FILE *file = fopen(times, "re");
+	CHECK(file != NULL);
+	while (file && fgets(line, sizeof(line), file)) {
+		if (sscanf(line, "%*u,%*u,%*u,%*u,%*[^,],%" SCNu64, &serial) != 1 || serial == last)
+			continue;
+		last = serial;
+		snprintf(list + strlen(list), sizeof(list) - strlen(list), "%" PRIu64 " ", serial);
+	}
+	if (file)
+		fclose(file);
+	unlink(times);
+	unlink(path);
+	return list;
+}
+
+/*
+ * A recording that another follows just before the pause, while the display takes its time: both have their pictures,
+ * however long it takes to hear of them.
+ */
+static void test_a_recording_before_a_pause(void)
+{
+	for (uint32_t vblanks = 20; vblanks <= 400; vblanks += 95) {
+		char folder[] = "/tmp/pursuit-stays-XXXXXX", one[64], other[64];
+		CHECK(mkdtemp(folder) != NULL);
+		world_init();
+		render_set_tee(&world.render, make_tee(folder, "one", one));
+		show_boosted();
+		run(35);
+		CHECK_INT(world.render.serial, 2);
+		world.silent = true;
+		render_set_view(&world.render, VIEW_HELP);
+		run(3);
+		CHECK_INT(world.render.serial, 3);
+		render_set_tee(&world.render, make_tee(folder, "other", other));
+		run(vblanks);
+		CHECK_INT(world.render.serial, 4);
+		CHECK_INT(world.closed, 0);
+		tell_untold();
+		run(20);
+		CHECK(world.render.paused);
+		CHECK_INT(world.closed, 1);
+		world_finish();
+		CHECK_STRING(pictures_in(one), "1 2 3 ");
+		CHECK_STRING(pictures_in(other), "4 ");
+		CHECK_INT(rmdir(folder), 0);
+	}
 }
 
 static unsigned count_logged(const char *text)
@@ -234,8 +345,10 @@ int main(void)
 {
 	RUN(test_the_view_changes_while_nothing_moves);
 	RUN(test_a_slow_picture);
+	RUN(test_slow_real_frames);
 	RUN(test_a_boosted_picture_does_not_stay);
 	RUN(test_a_presenter_that_takes_nothing);
+	RUN(test_a_recording_before_a_pause);
 	RUN(test_no_picture_to_draw_into);
 	return test_result();
 }

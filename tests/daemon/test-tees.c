@@ -110,6 +110,41 @@ static void test_in_a_row(void)
 	tees_finish(&tees);
 }
 
+/* All rests but the last picture, which is on its way: it is in its file whenever it comes, which is closed then. */
+static void test_rest(void)
+{
+	struct tees tees = {.close = close_now, .log = &quiet};
+	closed = 0;
+	for (unsigned i = 0; i < 3; i++) {
+		tees_follow(&tees, make(i), 1, i);
+		draw(&tees, 1, i + 1);
+	}
+	tees_follow(&tees, make(3), 1, 3);
+	show(&tees, 1, 1);
+	tees_rest(&tees, 3);
+	CHECK_INT(closed, 0);
+	show(&tees, 1, 3);
+	CHECK_INT(closed, 3);
+	CHECK_STRING(serials_of(0), "1 ");
+	CHECK_STRING(serials_of(1), "");
+	CHECK_STRING(serials_of(2), "3 ");
+	/* It goes on before that picture has come: what is drawn since waits for its own. */
+	draw(&tees, 1, 4);
+	tees_follow(&tees, make(4), 1, 4);
+	tees_rest(&tees, 4);
+	draw(&tees, 1, 5);
+	tees_follow(&tees, NULL, 1, 5);
+	CHECK_INT(closed, 3);
+	show(&tees, 1, 4);
+	CHECK_INT(closed, 4);
+	show(&tees, 1, 5);
+	tees_rest(&tees, 0);
+	CHECK_INT(closed, 5);
+	CHECK_STRING(serials_of(3), "4 ");
+	CHECK_STRING(serials_of(4), "5 ");
+	tees_finish(&tees);
+}
+
 /* More than anybody has a use for: none stays open for ever, and the end finds all that are left. */
 static void test_without_end(void)
 {
@@ -122,7 +157,7 @@ static void test_without_end(void)
 	CHECK_INT(closed, TEES_BEFORE - 1);
 	show(&tees, 1, 2 * TEES_BEFORE);
 	show(&tees, 1, 2 * TEES_BEFORE - 1);
-	tees_rest(&tees);
+	tees_rest(&tees, 0);
 	CHECK_INT(closed, 2 * TEES_BEFORE - 1);
 	CHECK_STRING(serials_of(2 * TEES_BEFORE - 2), "31 ");
 	tees_finish(&tees);
@@ -268,6 +303,7 @@ int main(void)
 	CHECK(mkdtemp(folder) != NULL);
 	quiet = (struct log){.fd = memfd_create("log", MFD_CLOEXEC), .level = LOG_LEVEL_ERROR};
 	RUN(test_in_a_row);
+	RUN(test_rest);
 	RUN(test_without_end);
 	RUN(test_images_of_two);
 	RUN(test_slow_disk);
