@@ -136,6 +136,9 @@ int draw_queue(struct render *render, struct presenter_image *image, uint64_t vb
 	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
 	if (result == 0)
 		render->serial = render->awaited = serial;
+	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
+	if (result == 0 && show == STATS_REAL && frame)
+		frame->queued = true;
 	if (result == 0 || result == -EBUSY)
 		render_expect_flips(render);
 	if (result == 0 && render->tees.now)
@@ -368,7 +371,7 @@ static void govern(struct render *render, uint64_t now_ns, uint64_t vblank)
 static void give_up(struct render *render)
 {
 	if (render->paused || render->pause_vblanks > 0)
-		showing_close_frames(&render->showing, render->group + 1);
+		showing_settle_frames(&render->showing, render->group + 1);
 }
 
 /* The presenter has it while the GPU is at it still: what it costs, and when it was ready, is known only now. */

@@ -256,6 +256,7 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 	tees_flip(&render->tees, flip, &render->grid);
 	if (lab_is_active(render->lab))
 		tell_lab(render, flip);
+	showing_settle_frames(&render->showing, render->showing.settling);
 }
 
 /* From now to a picture that is there as early as the presenter wants it. */
@@ -364,6 +365,7 @@ static void draw_what_stays(struct render *render, uint64_t vblank)
 
 static void fall_asleep(struct render *render)
 {
+	close_all_frames(render);
 	render->presenter->impl->pause(render->presenter);
 	render->showing.last_target_ns = 0;
 	render->paused = true;
@@ -386,7 +388,7 @@ static void pause_once(struct render *render)
 	if (render->pause_vblanks++ == 0)
 		render->presenter->impl->clear_standby(render->presenter);
 	if (render->pause_vblanks == PLAIN_AFTER) {
-		close_all_frames(render);
+		showing_settle_frames(&render->showing, render->group + 1);
 		draw_count_report(render);
 		render->stay_tries = 0;
 	}

@@ -41,21 +41,42 @@ static void close_frame(struct showing *showing, struct showing_frame *frame)
 	frame->group = 0;
 }
 
+/* The first group that may have a frame still, of those before `group`. */
+static uint64_t first_group(uint64_t group)
+{
+	return group > SHOWING_FRAMES ? group - SHOWING_FRAMES : 1;
+}
+
 void showing_close_frames(struct showing *showing, uint64_t group)
 {
 	/* In the order of groups, so that the client reads them in order. */
-	for (uint64_t g = group > SHOWING_FRAMES ? group - SHOWING_FRAMES : 1; g < group; g++)
+	for (uint64_t g = first_group(group); g < group; g++)
 		if (showing->frames[g % SHOWING_FRAMES].group == g)
 			close_frame(showing, &showing->frames[g % SHOWING_FRAMES]);
 }
 
+static bool is_unshown(const struct showing_frame *frame)
+{
+	return frame->group != 0 && frame->report.flip_ns == 0 && frame->report.state != PURSUIT_FEEDBACK_REFUSED;
+}
+
+void showing_settle_frames(struct showing *showing, uint64_t group)
+{
+	uint64_t g = first_group(group);
+	for (; g < group; g++) {
+		const struct showing_frame *frame = &showing->frames[g % SHOWING_FRAMES];
+		if (frame->group == g && frame->queued && is_unshown(frame))
+			break;
+	}
+	showing->settling = group;
+	showing_close_frames(showing, g);
+}
+
 bool showing_has_unshown(const struct showing *showing)
 {
-	for (uint32_t i = 0; i < SHOWING_FRAMES; i++) {
-		const struct showing_frame *frame = &showing->frames[i];
-		if (frame->group != 0 && frame->report.flip_ns == 0 && frame->report.state != PURSUIT_FEEDBACK_REFUSED)
+	for (uint32_t i = 0; i < SHOWING_FRAMES; i++)
+		if (is_unshown(&showing->frames[i]))
 			return true;
-	}
 	return false;
 }
 
@@ -151,7 +172,11 @@ static enum stats_show count_picture(struct showing *showing, const struct prese
 		if (frame)
 			frame->report.in_betweens++;
 		break;
-	case STATS_REPEAT: /* the plain picture of a pause */
+	case STATS_REPEAT: /* the plain picture of a pause: it may have come before the real one could be shown */
+		if (frame && is_unshown(frame))
+			count_first_flip(showing, frame, flip, picture);
+		showing->last_target_ns = 0;
+		return STATS_REPEAT;
 	case STATS_STANDBY:
 	case STATS_KEPT:
 		showing->last_target_ns = 0;

@@ -44,6 +44,7 @@ struct showing_frame {
 	struct stream *stream; /* referenced; NULL: it has ended */
 	struct pursuit_feedback report;
 	bool boosted; /* its first showing gives light that its in-betweens take away */
+	bool queued;  /* the presenter has its picture, so it will be shown, unless a newer one comes first */
 };
 
 struct showing {
@@ -55,6 +56,7 @@ struct showing {
 	} plans[SHOWING_VBLANKS];
 	struct showing_frame frames[SHOWING_FRAMES];
 	uint64_t front_group;
+	uint64_t settling;       /* the group that showing_settle_frames() was called with last */
 	uint64_t last_target_ns; /* of the vblank before, if one was due then; otherwise 0 */
 	uint64_t next_submit_ns; /* hint that goes into reports */
 	bool pausing;            /* an undecided vblank is no miss */
@@ -84,5 +86,10 @@ bool showing_has_unshown(const struct showing *showing);
 
 /* Reports every frame of groups before `group`: shown, or replaced if it never was. */
 void showing_close_frames(struct showing *showing, uint64_t group);
+/*
+ * The same, but one that the presenter has is waited for, and those after it, so that reports come in order: to be
+ * called again, with `settling`, after each flip.
+ */
+void showing_settle_frames(struct showing *showing, uint64_t group);
 
 #endif

@@ -304,6 +304,96 @@ static void test_a_recording_before_a_pause(void)
 	}
 }
 
+/* ---- what a client hears of its last frame before a pause ---- */
+
+static struct stream client = {.number = 1};
+static struct pursuit_shm_control client_control;
+
+/* Its real frame was given to the presenter, for a vblank soon; the flip is not told. */
+static void show_real_frame_of_client(void)
+{
+	struct presenter_image image;
+	memset(&client_control, 0, sizeof(client_control));
+	client.control = &client_control;
+	client.feedback_count = 0;
+	atomic_init(&client.references, 1);
+	atomic_init(&client.ended, false);
+	show_boosted();
+	world.silent = true;
+	world.render.stream_number = client.number;
+	showing_add_frame(&world.render.showing, 1, &client, &world.picture.frame);
+	const uint64_t vblank = render_first_vblank(&world.render) + 1;
+	CHECK_INT(pictures_acquire(&world.pictures.presenter, 64, 64, &image), 0);
+	CHECK_INT(draw_queue(&world.render, &image, vblank, STATS_REAL, 0.0), 0);
+	CHECK_INT(atomic_load(&client.references), 2);
+	world.render.next_vblank = vblank + 1;
+}
+
+/* However long a flip takes to be told, its frame was shown then; of one that never ends a report comes all the same.
+ */
+static void test_a_flip_that_ends_late(void)
+{
+	const struct pursuit_feedback *report = &client_control.feedback[0];
+	for (uint32_t vblanks = 10; vblanks <= 450; vblanks += 40) {
+		world_init();
+		show_real_frame_of_client();
+		run(vblanks);
+		const bool given_up = vblanks > 30 + 256; /* SLEEP_ANYWAY after the pause has begun */
+		CHECK_INT(client_control.feedback_count, given_up ? 1 : 0);
+		const uint64_t flip_ns = world.untold[0].flip_ns;
+		tell_untold();
+		run(100);
+		CHECK(world.render.paused);
+		CHECK_INT(client_control.feedback_count, 1);
+		CHECK_INT(report->state, given_up ? PURSUIT_FEEDBACK_REPLACED : PURSUIT_FEEDBACK_SHOWN);
+		CHECK_INT(report->flip_ns, given_up ? 0 : flip_ns);
+		CHECK_INT(world.stats.lost_real_frames, given_up ? 1 : 0);
+		CHECK_INT(world.stats.real_frames, given_up ? 0 : 1);
+		CHECK_INT(atomic_load(&client.references), 1);
+		world_finish();
+	}
+}
+
+/* Nothing is kept of one that is gone. */
+static void test_a_client_that_is_gone_before_its_flip(void)
+{
+	world_init();
+	show_real_frame_of_client();
+	run(100);
+	CHECK_INT(atomic_load(&client.references), 2);
+	atomic_store(&client.ended, true);
+	render_set_streams(&world.render, NULL, 0);
+	CHECK_INT(atomic_load(&client.references), 1);
+	tell_untold();
+	run(100);
+	CHECK(world.render.paused);
+	CHECK_INT(client_control.feedback_count, 0);
+	CHECK_INT(world.stats.real_frames, 1);
+	world_finish();
+}
+
+/* The display took the plain picture of the pause before it came to the real frame's own: that is the frame, too. */
+static void test_a_frame_shown_as_its_plain_picture(void)
+{
+	struct presenter_flip flip = {.vblank = 7, .flip_ns = 5 * MS, .group = 1, .shown = PRESENTER_PICTURE};
+	world_init();
+	show_real_frame_of_client();
+	world.render.group++;
+	showing_add_frame(&world.render.showing, 2, &client, &world.picture.frame);
+	showing_settle_frames(&world.render.showing, 3);
+	CHECK_INT(client_control.feedback_count, 0);
+	flip.serial = 100;
+	showing_add_picture(&world.render.showing,
+						&(struct showing_picture){.serial = 100, .group = 1, .show = STATS_REPEAT, .ready_ns = MS});
+	render_flip(&world.render, &flip);
+	/* And the one after it, which was given no picture, is told of after it. */
+	CHECK_INT(client_control.feedback_count, 2);
+	CHECK_INT(client_control.feedback[0].state, PURSUIT_FEEDBACK_SHOWN);
+	CHECK_INT(client_control.feedback[0].flip_ns, 5 * MS);
+	CHECK_INT(client_control.feedback[1].state, PURSUIT_FEEDBACK_REPLACED);
+	world_finish();
+}
+
 static unsigned count_logged(const char *text)
 {
 	static char content[4096];
@@ -349,6 +439,9 @@ int main(void)
 	RUN(test_a_boosted_picture_does_not_stay);
 	RUN(test_a_presenter_that_takes_nothing);
 	RUN(test_a_recording_before_a_pause);
+	RUN(test_a_flip_that_ends_late);
+	RUN(test_a_client_that_is_gone_before_its_flip);
+	RUN(test_a_frame_shown_as_its_plain_picture);
 	RUN(test_no_picture_to_draw_into);
 	return test_result();
 }
