@@ -329,7 +329,8 @@ static void set_params(struct render *render)
 		result = engine_set_params(render->engine, &params, &error);
 	if (result < 0)
 		log_warning(render->log, "settings of the engine: %s", error.text);
-	render->between_cost = render->plain_cost = (struct cost){.count = 0};
+	else
+		draw_note_params(render, &params);
 	render->settings_changed = false;
 }
 

@@ -24,6 +24,25 @@ int draw_get_params(const struct render *render, struct engine_params *params, s
 	return result;
 }
 
+/* What a picture is seen on is not among them: other numbers, the same work. */
+static bool cost_the_same(const struct engine_params *a, const struct engine_params *b)
+{
+	return a->method && b->method && strcmp(a->method, b->method) == 0 && a->context == b->context &&
+		   a->device == b->device && a->gles == b->gles && a->threads == b->threads && a->blur == b->blur &&
+		   a->motion_model == b->motion_model && a->analysis == b->analysis &&
+		   a->no_compensation == b->no_compensation && a->cell == b->cell && a->blur_level == b->blur_level &&
+		   a->threshold_quarter == b->threshold_quarter;
+}
+
+void draw_note_params(struct render *render, const struct engine_params *params)
+{
+	if (!cost_the_same(params, &render->params))
+		render_forget_costs(render);
+	render->params = *params;
+	snprintf(render->params_method, sizeof(render->params_method), "%s", params->method);
+	render->params.method = render->params_method;
+}
+
 static bool runs_on_cpu(const struct render *render)
 {
 	return strcmp(engine_get_info(render->engine)->context, "cpu") == 0;
@@ -41,6 +60,7 @@ int draw_make_engine(struct render *render, struct error *error)
 		return -EIO;
 	engine_destroy(&render->engine);
 	render->engine = engine;
+	draw_note_params(render, &params);
 	render->stand_in = false;
 	render->engine_made_ns = clock_now(render->clock);
 	const struct engine_info *info = engine_get_info(engine);
@@ -63,6 +83,7 @@ void draw_follow_context(struct render *render)
 		engine_destroy(&render->engine);
 		render->engine_retry_ns = render->engine_delay_ns = 0;
 		render->begun = render->report_due = false;
+		render->real_cost = (struct cost){.count = 0};
 	}
 	render->context = context;
 	render->context_shunned = render->through_memory = false;
@@ -168,7 +189,8 @@ void draw_take_engine(struct render *render)
 	render->stand_in = render->begun = render->report_due = render->context_shunned = render->through_memory = false;
 	render->engine_made_ns = clock_now(render->clock);
 	render->engine_retry_ns = render->engine_delay_ns = 0;
-	render->real_cost = render->between_cost = render->plain_cost = (struct cost){.count = 0};
+	render_forget_costs(render);
+	render->real_cost = (struct cost){.count = 0};
 	render->settings_changed = true;
 	render->owner.engine_made(render->owner.data, engine_get_info(render->engine));
 	/* In the presenter's context only this thread can make one. */

@@ -53,8 +53,16 @@ void render_finish(struct render *render)
 	showing_finish(&render->showing);
 }
 
+void render_forget_costs(struct render *render)
+{
+	render->between_cost = render->plain_cost = (struct cost){.count = 0};
+}
+
 void render_set_tee(struct render *render, struct tee *tee)
 {
+	/* Pictures are copied, and come back from GL for that. */
+	if ((tee != NULL) != (render->tees.now != NULL))
+		render_forget_costs(render);
 	tees_follow(&render->tees, tee, render->group, render->serial);
 	render->redraw |= tee != NULL; /* a picture that stays is its first one */
 	if (render->paused)
@@ -110,6 +118,7 @@ void render_set_presenter(struct render *render, struct presenter *presenter)
 		render->grid = presenter->impl->get_grid(presenter);
 		render->lead_ns = presenter->impl->get_lead(presenter);
 	}
+	render_forget_costs(render); /* it has other memory */
 	showing_init(&render->showing, render->stats);
 	render->showing.period_ns = render->stats->vblank_ns = grid_period_ns(&render->grid);
 	start_pacer(render);
@@ -200,6 +209,8 @@ void render_set_settings(struct render *render, const struct settings *settings)
 {
 	const bool governor =
 		settings->governor != render->settings->governor || settings->level != render->settings->level;
+	if ((settings->lab.patch == LAB_PATCH_OFF) != (render->settings->lab.patch == LAB_PATCH_OFF))
+		render_forget_costs(render); /* the CPU draws on pictures */
 	say_changes(render, settings);
 	*render->settings = *settings;
 	if (governor)

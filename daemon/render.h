@@ -73,7 +73,9 @@ struct render {
 	struct log_limit lack_limit; /* of saying so */
 	struct log_limit draw_limit; /* of the engine's complaints */
 	bool settings_changed;       /* the engine does not know yet */
-	bool redraw;                 /* the view has changed: a picture that stays is drawn anew */
+	struct engine_params params; /* that the engine was given last; its method is a name below */
+	char params_method[32];
+	bool redraw;           /* the view has changed: a picture that stays is drawn anew */
 	bool show_held;        /* `frame`, which the stream still lends, is due once more, unless a newer one comes first */
 	struct stats *stats;   /* the owner's; only this thread touches them */
 	struct stream *stream; /* the one that is shown, NULL none; the owner's reference */
@@ -170,6 +172,10 @@ uint64_t render_first_vblank(const struct render *render);
 /* What a real frame from its intake to its picture, there as early as the presenter wants it, is expected to take. */
 uint64_t render_real_cost(const struct render *render);
 
+/* What pictures other than real ones cost is to be learned anew: they are made or written in another way from now on.
+ */
+void render_forget_costs(struct render *render);
+
 /* A picture was queued, or would have been if the presenter had room: vblanks are to be reported from now on. */
 void render_expect_flips(struct render *render);
 
@@ -206,6 +212,8 @@ void draw_kept(struct render *render, uint64_t vblank);
 
 /* The engine's settings, at the governor's level. 0 or -errno with a sentence. */
 int draw_get_params(const struct render *render, struct engine_params *params, struct error *error);
+/* The engine has these now; where they take other work, what pictures cost is forgotten. */
+void draw_note_params(struct render *render, const struct engine_params *params);
 /* The engine's context is to be that which the presenter offers, if any: one that cannot go on is destroyed. */
 void draw_follow_context(struct render *render);
 /* Makes the engine. 0 or -errno with a sentence. */

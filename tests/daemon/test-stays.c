@@ -394,6 +394,46 @@ static void test_a_frame_shown_as_its_plain_picture(void)
 	world_finish();
 }
 
+/* ---- what drawing costs ---- */
+
+/* With another setting, has it been forgotten by the next frame? */
+static bool forgets(const char *name, const char *value)
+{
+	struct settings settings = world.settings;
+	struct error error = {""};
+	cost_add(&world.render.between_cost, 7 * MS);
+	cost_add(&world.render.plain_cost, 7 * MS);
+	CHECK_INT(settings_set(&settings, name, value, &error), 0);
+	render_set_settings(&world.render, &settings);
+	world.render.frame = world.picture.frame;
+	world.render.frame.stream = 1;
+	world.drawing_ns = 0;
+	draw_held(&world.render, render_first_vblank(&world.render) + 1);
+	CHECK(!world.render.settings_changed);
+	return world.render.between_cost.count == 0;
+}
+
+/* Only where the work is another one; a file, a limit or a socket that changes leaves it known. */
+static void test_costs_are_kept(void)
+{
+	static const char *const same[][2] = {{"record", "/tmp/r"},           {"max-clients", "3"},
+										  {"strobe-line", "0"},           {"display-width-mm", "1000"},
+										  {"viewing-distance-mm", "400"}, {"gamma", "2.4"}};
+	static const char *const other[][2] = {{"method", "scatter"}, {"blur", "off"},     {"compensation", "no"},
+										   {"cell", "16"},        {"analysis", "gpu"}, {"level", "1"},
+										   {"patch", "alternate"}};
+	world_init();
+	show_boosted();
+	for (size_t i = 0; i < sizeof(same) / sizeof(same[0]); i++) {
+		CHECK(!forgets(same[i][0], same[i][1]));
+		CHECK_INT(world.render.between_cost.count, i + 1);
+	}
+	for (size_t i = 0; i < sizeof(other) / sizeof(other[0]); i++)
+		CHECK(forgets(other[i][0], other[i][1]));
+	CHECK(!forgets("patch", "alternate"));
+	world_finish();
+}
+
 static unsigned count_logged(const char *text)
 {
 	static char content[4096];
@@ -442,6 +482,7 @@ int main(void)
 	RUN(test_a_flip_that_ends_late);
 	RUN(test_a_client_that_is_gone_before_its_flip);
 	RUN(test_a_frame_shown_as_its_plain_picture);
+	RUN(test_costs_are_kept);
 	RUN(test_no_picture_to_draw_into);
 	return test_result();
 }
