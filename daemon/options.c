@@ -110,7 +110,8 @@ static const struct option_row rows[] = {
 	CHOICE(on_client_exit, "on-client-exit", OPTION_OUTPUT, "keep", exit_choices,
 		   "When the client that is shown closes its stream, ends or is killed: its last picture stays, or black."),
 	TEXT(tee, "tee", OPTION_OUTPUT, "",
-		 "Record what is shown, each vblank once, into this YUV4MPEG2 file, and the times beside it in FILE.csv; or, "
+		 "Record what is shown, each vblank once, into this YUV4MPEG2 file (.y4m), and the times beside it in "
+		 "FILE.csv; or, "
 		 "with a name like 'out/%06d.png', into an image each, numbered on from those that are there, and the times in "
 		 "out/times.csv."),
 	TEXT(monitor, "monitor", OPTION_OUTPUT, "",

@@ -5,9 +5,29 @@
 
 #include <errno.h>
 #include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
 
 #include "daemon/peer.h"
 #include "daemon/present/presenter.h"
+#include "daemon/record/pattern.h"
+
+/* Pipes and devices may be called as they like. */
+static int check_tee(const char *option, const char *path, struct error *error)
+{
+	static const char ending[] = ".y4m";
+	const size_t length = strlen(path), least = strlen(ending);
+	struct stat status;
+	if (strchr(path, '%'))
+		return pattern_check_written(option, path, ".png", error);
+	if (length == 0 || (length >= least && strcasecmp(path + length - least, ending) == 0))
+		return 0;
+	if (stat(path, &status) == 0 && !S_ISREG(status.st_mode))
+		return 0;
+	return error_set(error, -EINVAL,
+					 "%s: '%s': must end in %s, the format that is written, or be a name like 'out/%%06d.png'", option,
+					 path, ending);
+}
 
 int setting_check(const struct option_row *row, const struct settings *settings, struct error *error)
 {
@@ -17,6 +37,8 @@ int setting_check(const struct option_row *row, const struct settings *settings,
 		return peer_check_users(row->name, settings->allow_users, error);
 	if (strcmp(row->name, "allow-groups") == 0)
 		return peer_check_groups(row->name, settings->allow_groups, error);
+	if (strcmp(row->name, "tee") == 0)
+		return check_tee(row->name, settings->tee, error);
 	return 0;
 }
 

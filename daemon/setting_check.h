@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
-/* Settings that mean something only together with what is linked in or with this machine: methods, presenters, users.
+/*
+ * Settings that mean something only together with what is linked in or with this machine: methods, presenters, users,
+ * formats of files.
  */
 #ifndef PURSUIT_SETTING_CHECK_H
 #define PURSUIT_SETTING_CHECK_H

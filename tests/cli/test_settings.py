@@ -67,7 +67,8 @@ class Settings(common.Case):
         folder = self.path("a" + " " * 60 + "b")
         os.mkdir(folder)
         names = ["stats", "record", "tee", "latency-log"]
-        values = [folder + "/" + "./" * ((500 - len(folder)) // 2) + name[:3] + ".csv" for name in names]
+        values = [folder + "/" + "./" * ((500 - len(folder)) // 2) + name[:3] + (".y4m" if name == "tee" else ".csv")
+                  for name in names]
         self.set(*[f"{name}={value}" for name, value in zip(names, values)])
         for name, value in zip(names, values):
             self.assertEqual(self.get(name), value + "\n")

@@ -391,6 +391,7 @@ static void test_refusals(void)
 	} wrong[] = {
 		{"tee=/no-such-folder/video.y4m", "/no-such-folder/video.y4m"},
 		{"tee=/no-such-folder/%06d.png", "/no-such-folder"},
+		{"tee=shown.mp4", "tee: 'shown.mp4': must end in .y4m"},
 		{"record=/no-such-folder/recording", "/no-such-folder/recording"},
 		{"stats=/no-such-folder/stats", "stats: /no-such-folder/stats: No such file"},
 		{"latency-log=/no-such-folder/log.csv", "/no-such-folder/log.csv"},

@@ -247,10 +247,26 @@ static void test_no_such_folder(void)
 	fixture_spawn(&fixture, images);
 	CHECK_INT(fixture_join(&fixture), 1);
 	CHECK(fixture_logged(&fixture, "tee: /nowhere/times.csv: No such file or directory"));
-	const char *const wrong[] = {"--tee=shown_%x.png", NULL};
-	fixture_spawn(&fixture, wrong);
-	CHECK_INT(fixture_join(&fixture), 1);
-	CHECK(fixture_logged(&fixture, "shown_%x.png"));
+}
+
+/* Before anything else is made: a usage error that names option and value. */
+static void test_wrong_names(void)
+{
+	static const char *const wrong[][2] = {
+		{"--tee=shown_%x.png", "tee: pattern 'shown_%x.png': must have exactly one %d or %04d"},
+		{"--tee=shown_%d_%d.png", "tee: pattern 'shown_%d_%d.png': must have exactly one"},
+		{"--tee=shown_%04d.jpg", "tee: pattern 'shown_%04d.jpg': must end in .png"},
+		{"--tee=shown_%04d.y4m", "tee: pattern 'shown_%04d.y4m': must end in .png"},
+		{"--tee=shown.png", "tee: 'shown.png': must end in .y4m"},
+		{"--tee=shown.mp4", "tee: 'shown.mp4': must end in .y4m"},
+		{"--tee=y4m", "tee: 'y4m': must end in .y4m"},
+	};
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		const char *const arguments[] = {wrong[i][0], NULL};
+		fixture_spawn(&fixture, arguments);
+		CHECK_INT(fixture_join(&fixture), 2);
+		CHECK(fixture_logged(&fixture, wrong[i][1]));
+	}
 }
 
 int main(int argc, char **argv)
@@ -262,6 +278,7 @@ int main(int argc, char **argv)
 	RUN(test_disk_full);
 	RUN(test_disk_that_hangs);
 	RUN(test_no_such_folder);
+	RUN(test_wrong_names);
 	fixture_finish(&fixture);
 	return test_result();
 }
