@@ -3,6 +3,7 @@
 
 #include "daemon/descriptors.h"
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -19,4 +20,14 @@ void descriptors_close(unsigned first, unsigned last)
 	const rlim_t end = limit.rlim_cur < MOST ? limit.rlim_cur : MOST;
 	for (unsigned fd = first; fd <= last && fd < end; fd++)
 		close((int)fd);
+}
+
+void descriptors_fill(void)
+{
+	int fd;
+	/* They are given from the lowest on. */
+	while ((fd = open("/dev/null", O_RDONLY)) >= 0 && fd <= STDERR_FILENO)
+		;
+	if (fd >= 0)
+		close(fd);
 }

@@ -14,6 +14,7 @@
 #include "daemon/arguments.h"
 #include "daemon/clock.h"
 #include "daemon/control.h"
+#include "daemon/descriptors.h"
 #include "daemon/keyboard.h"
 #include "daemon/lab/lab.h"
 #include "daemon/live.h"
@@ -92,9 +93,13 @@ static void print_version(void)
 	printf("pursuitd %s\n", PURSUITD_VERSION);
 }
 
-static int not_printed(void)
+static int printed(void)
 {
-	fprintf(stderr, "pursuitd: standard output cannot be written\n");
+	const int result = fflush(stdout) == 0 ? 0 : errno;
+	if (result == 0 && !ferror(stdout))
+		return 0;
+	fprintf(stderr, "pursuitd: standard output cannot be written%s%s\n", result ? ": " : "",
+			result ? strerror(result) : "");
 	return 1;
 }
 
@@ -284,10 +289,11 @@ int main(int argc, char **argv)
 	struct error error = {""};
 	int status;
 
+	descriptors_fill();
 	if (x_mode_guard_run(argc, argv, &status))
 		return status;
 	if (tell(argc, argv))
-		return fflush(stdout) == 0 && !ferror(stdout) ? 0 : not_printed();
+		return printed();
 	if (arguments_read(&arguments, argc, argv, &error) < 0) {
 		arguments_finish(&arguments);
 		return usage_error(error.text);

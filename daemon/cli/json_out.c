@@ -7,12 +7,18 @@
 
 #include "args.h"
 
+bool json_print(const json_t *object)
+{
+	const bool whole = json_dumpf(object, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) == 0;
+	putchar('\n');
+	return whole || ferror(stdout);
+}
+
 int json_out(const char *verb, json_t *object)
 {
 	if (!object)
 		return args_failed(verb, "out of memory, or a name is no UTF-8 and JSON cannot hold it");
-	const bool done = json_dumpf(object, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) == 0;
+	const bool whole = json_print(object);
 	json_decref(object);
-	putchar('\n');
-	return done && fflush(stdout) == 0 ? STATUS_DONE : args_failed(verb, "standard output cannot be written");
+	return whole ? STATUS_DONE : args_failed(verb, "out of memory");
 }

@@ -6,6 +6,10 @@
 #define PURSUIT_CLI_JSON_OUT_H
 
 #include <jansson.h>
+#include <stdbool.h>
+
+/* False: there was no memory for it. Of what standard output does not take main tells. */
+bool json_print(const json_t *object);
 
 /* Takes the object over; NULL is one that there was no memory for, or text that is no UTF-8. STATUS_DONE or _FAILED. */
 int json_out(const char *verb, json_t *object);

@@ -3,12 +3,14 @@
 
 /* pursuit: the command. A table of verbs, each in a file of its own. */
 
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "args.h"
 #include "client/pursuit.h"
+#include "daemon/descriptors.h"
 #include "verbs.h"
 
 struct verb {
@@ -69,15 +71,20 @@ static int unknown_verb(const char *name)
 /* What could not be printed is not done. `name`: of a verb, or NULL. */
 static int printed(const char *name, int status)
 {
-	const bool written = fflush(stdout) == 0 && !ferror(stdout);
-	if (written || status != STATUS_DONE)
+	int result = fflush(stdout) == 0 ? 0 : errno;
+	if (result == 0 && !ferror(stdout))
 		return status;
-	fprintf(stderr, "pursuit%s%s: standard output cannot be written\n", name ? " " : "", name ? name : "");
-	return STATUS_FAILED;
+	/* Whoever wrote it had the reason, and has forgotten it. */
+	if (result == 0 && (putchar('\n') == EOF || fflush(stdout) != 0))
+		result = errno;
+	fprintf(stderr, "pursuit%s%s: standard output cannot be written%s%s\n", name ? " " : "", name ? name : "",
+			result ? ": " : "", result ? strerror(result) : "");
+	return status == STATUS_DONE ? STATUS_FAILED : status;
 }
 
 int main(int argc, char **argv)
 {
+	descriptors_fill();
 	signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes is an error like a full disk */
 	if (argc < 2) {
 		print_help(stderr);

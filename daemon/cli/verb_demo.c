@@ -17,6 +17,7 @@
 #include "demo_scorer.h"
 #include "figures.h"
 #include "interrupt.h"
+#include "json_out.h"
 #include "task.h"
 #include "timeline.h"
 #include "verbs.h"
@@ -419,10 +420,10 @@ static int leave_results(struct demo *demo, struct error *error)
 		return error_set(error, -ENOMEM, "out of memory");
 	if (result == 0)
 		result = write_report(report, demo->report, error);
-	if (result == 0 && demo->options.json)
-		result = json_dumpf(report, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) || putchar('\n') == EOF ? -EIO : 0;
-	else if (result == 0)
+	if (result == 0 && !demo->options.json)
 		print_summary(demo, report);
+	else if (result == 0 && !json_print(report))
+		result = error_set(error, -ENOMEM, "out of memory");
 	if (result == 0 && figure(report, "displayed_frames", NULL) < 1)
 		result = error_set(error, -ENODATA, "nothing was displayed; see %s", demo->log);
 	json_decref(report);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "args.h"
+#include "json_out.h"
 #include "latency_fetch.h"
 #include "latency_report.h"
 #include "loopback.h"
@@ -56,8 +57,7 @@ static int load(struct latency_report *report, const struct choices *choices, un
 
 static void print_json(json_t *object)
 {
-	json_dumpf(object, stdout, JSON_INDENT(1) | JSON_REAL_PRECISION(9));
-	putchar('\n');
+	json_print(object);
 	json_decref(object);
 }
 

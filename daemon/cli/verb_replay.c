@@ -14,6 +14,7 @@
 #include "daemon/record/recording.h"
 #include "expect.h"
 #include "figures.h"
+#include "json_out.h"
 #include "player.h"
 #include "verbs.h"
 
@@ -307,20 +308,24 @@ static json_t *all_figures(struct replay *replay)
 	return json;
 }
 
+static int write_json_file(const json_t *json, const char *path, struct error *error)
+{
+	FILE *file = fopen(path, "w");
+	if (!file)
+		return error_set(error, -errno, "%s: %s", path, strerror(errno));
+	bool wrong = json_dumpf(json, file, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) != 0 || fputc('\n', file) == EOF;
+	wrong |= fclose(file) != 0;
+	return wrong ? error_set(error, -EIO, "%s: not written whole: %s", path, strerror(errno)) : 0;
+}
+
 static int write_json(struct replay *replay, struct error *error)
 {
 	json_t *json = all_figures(replay);
-	bool to_stdout = strcmp(replay->options->json, "-") == 0;
-	FILE *file = to_stdout ? stdout : fopen(replay->options->json, "w");
 	int result = 0;
-	if (!file) {
-		result = error_set(error, -errno, "%s: %s", replay->options->json, strerror(errno));
-	} else {
-		bool wrong = json_dumpf(json, file, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) != 0 || fputc('\n', file) == EOF;
-		wrong |= (to_stdout ? fflush(file) : fclose(file)) != 0;
-		if (wrong)
-			result = error_set(error, -EIO, "%s: not written whole: %s", replay->options->json, strerror(errno));
-	}
+	if (strcmp(replay->options->json, "-") != 0)
+		result = write_json_file(json, replay->options->json, error);
+	else if (!json_print(json))
+		result = error_set(error, -ENOMEM, "out of memory");
 	json_decref(json);
 	return result;
 }

@@ -169,10 +169,14 @@ static int once(struct top *top, uint32_t interval_ms, bool as_json, struct erro
 	}
 	if (result < 0)
 		return result;
-	if (as_json)
-		return json_out(VERB, top_view_json(&top->view)) == STATUS_DONE ? 0 : error_set(error, -EIO, "nothing printed");
-	top_view_print(&top->view, columns_of_terminal(), color_is_wanted(), stdout);
-	return 0;
+	if (!as_json) {
+		top_view_print(&top->view, columns_of_terminal(), color_is_wanted(), stdout);
+		return 0;
+	}
+	json_t *json = top_view_json(&top->view);
+	const bool whole = json_print(json);
+	json_decref(json);
+	return whole ? 0 : error_set(error, -ENOMEM, "out of memory");
 }
 
 int verb_top(int argc, char **argv)

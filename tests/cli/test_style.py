@@ -179,7 +179,34 @@ class Style(common.Case):
             with self.subTest(verb=verb), open("/dev/full", "w") as full:
                 result = subprocess.run([common.PURSUIT, verb, *self.words(listed), *JSON.get(verb, ["--json"])],
                                         stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
-                self.assertEqual(result.returncode, 1, result.stderr)
+                self.check_unwritten(f"pursuit {verb}", result, "No space left on device")
+
+    def check_unwritten(self, program, result, reason):
+        """One sentence, whatever else was said, and the last."""
+        self.assertEqual(result.returncode, 1, result.stderr)
+        self.assertEqual(result.stderr.count("cannot be written"), 1, result.stderr)
+        self.assertTrue(result.stderr.endswith(f"{program}: standard output cannot be written: {reason}\n"), result.stderr)
+
+    def test_json_of_replay_on_a_full_disk(self):
+        words = ["replay", *self.words(WORK["replay"]), "--json"]
+        with open("/dev/full", "w") as full:
+            result = subprocess.run([common.PURSUIT, *words, "-"], stdout=full, stderr=subprocess.PIPE, text=True,
+                                    timeout=240)
+            self.check_unwritten("pursuit replay", result, "No space left on device")
+        result = self.must(*words, "/dev/full", status=1)
+        self.assertRegex(result.stderr, r"(?m)^pursuit replay: /dev/full: not written whole: No space left on device$")
+
+    def test_no_standard_output(self):
+        """What is opened does not take its place."""
+        for verb in "record", "status", "replay":
+            words = [common.PURSUIT, verb, *self.words(WORK[verb])]
+            with self.subTest(verb=verb):
+                result = subprocess.run(["sh", "-c", 'exec "$@" >&-', "sh", *words], stderr=subprocess.PIPE, text=True,
+                                    timeout=240)
+                self.check_unwritten(f"pursuit {verb}", result, "Bad file descriptor")
+        for program in [common.PURSUIT, "--version"], [PURSUITD, "--version"]:
+            result = subprocess.run(["sh", "-c", 'exec "$@" >&- 2>&-', "sh", *program], check=False)
+            self.assertEqual(result.returncode, 1)
 
     def test_texts_on_a_full_disk(self):
         for program in [common.PURSUIT, "--help"], [common.PURSUIT, "--version"], [common.PURSUIT, "record", "--help"], \
@@ -187,7 +214,7 @@ class Style(common.Case):
             with self.subTest(program=program), open("/dev/full", "w") as full:
                 result = subprocess.run(program, stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
                 self.assertEqual(result.returncode, 1)
-                self.assertRegex(result.stderr, r"^pursuit[a-z ]*: standard output cannot be written\n$")
+                self.assertRegex(result.stderr, r"^pursuit[a-z ]*: standard output cannot be written: No space left on device\n$")
 
 
 if __name__ == "__main__":

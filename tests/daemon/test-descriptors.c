@@ -65,8 +65,33 @@ static void test_all(void)
 	close(null);
 }
 
+/* In a child that was given some of the first three: what it opens is none of them, and what it prints goes nowhere. */
+static bool fills(unsigned given)
+{
+	const pid_t pid = fork();
+	int status = 0;
+	if (pid == 0) {
+		for (int fd = 0; fd < 3; fd++)
+			if (!(given >> fd & 1))
+				close(fd);
+		descriptors_fill();
+		const bool silent = given & 2 || write(STDOUT_FILENO, "x", 1) < 0;
+		_exit(open("/dev/zero", O_RDONLY | O_CLOEXEC) == 3 && silent ? 0 : 1);
+	}
+	CHECK(waitpid(pid, &status, 0) == pid);
+	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static void test_first_three(void)
+{
+	descriptors_close(3, DESCRIPTORS_ALL);
+	for (unsigned given = 0; given < 8; given++)
+		CHECK(fills(given));
+}
+
 int main(void)
 {
 	RUN(test_all);
+	RUN(test_first_three);
 	return test_result();
 }
