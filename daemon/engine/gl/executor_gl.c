@@ -9,9 +9,6 @@
 #include "daemon/engine/pass.h"
 #include "daemon/engine/pool.h"
 
-/* A GPU that needs longer for a picture is not coming back. */
-#define PATIENCE_NS UINT64_C(5000000000)
-
 static struct executor_gl *self(struct executor *executor)
 {
 	return (struct executor_gl *)executor;
@@ -98,13 +95,9 @@ static int finish(struct executor *executor, struct error *error)
 {
 	const struct gl *gl = table(executor);
 	const GLsync fence = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-	if (!fence)
-		return error_set(error, -EIO, "the context is lost: it gives no fence");
-	const GLenum result = gl->ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, PATIENCE_NS);
+	const int result = gl_wait(gl, fence, error);
 	gl->DeleteSync(fence);
-	if (result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED)
-		return 0;
-	return error_set(error, -EIO, "the context is lost: a fence does not come (0x%x)", result);
+	return result;
 }
 
 static int receive(struct executor *executor, struct arrival *arrival, struct error *error)

@@ -4,8 +4,11 @@
 #include "daemon/engine/gl/gl.h"
 
 #include <errno.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+
+#define PATIENCE_NS UINT64_C(5000000000)
 
 static gl_function find(gl_lookup lookup, const char *name)
 {
@@ -67,4 +70,14 @@ int gl_load(struct gl *gl, gl_lookup lookup, struct error *error)
 #undef X
 	learn_limits(gl);
 	return 0;
+}
+
+int gl_wait(const struct gl *gl, GLsync fence, struct error *error)
+{
+	if (!fence)
+		return error_set(error, -EIO, "the context is lost: it gives no fence");
+	const GLenum result = gl->ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, PATIENCE_NS);
+	if (result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED)
+		return 0;
+	return error_set(error, -EIO, "the context is lost: a fence does not come (0x%x)", result);
 }

@@ -131,4 +131,10 @@ int gl_load(struct gl *gl, gl_lookup lookup, struct error *error);
 
 bool gl_has_extension(const struct gl *gl, const char *name);
 
+/*
+ * Waits until that fence has come, five seconds at most: a GPU that needs longer is not coming back. 0, or -EIO with a
+ * sentence: the context is lost. So it is where it gave NULL for a fence.
+ */
+int gl_wait(const struct gl *gl, GLsync fence, struct error *error);
+
 #endif

@@ -6,9 +6,6 @@
 #include <errno.h>
 #include <string.h>
 
-/* A GPU that needs longer is not coming back. */
-#define PATIENCE_NS UINT64_C(5000000000)
-
 _Static_assert(4 * PURSUIT_MAX_SIZE <= READBACK_BLOCK, "a block holds a row");
 
 static uint32_t buffers(const struct readback *readback)
@@ -73,19 +70,12 @@ void readback_finish(struct readback *readback, const struct gl *gl)
 
 /* ---- there ---- */
 
-static bool is_filled(const struct readback_block *block, const struct gl *gl)
-{
-	if (!block->filled)
-		return false;
-	const GLenum result = gl->ClientWaitSync(block->filled, GL_SYNC_FLUSH_COMMANDS_BIT, PATIENCE_NS);
-	return result == GL_ALREADY_SIGNALED || result == GL_CONDITION_SATISFIED;
-}
-
 /* To where it belongs. */
 static int empty(const struct readback_block *block, const struct gl *gl, struct error *error)
 {
-	if (!is_filled(block, gl))
-		return error_set(error, -EIO, "the context is lost: a block of rows does not come back");
+	const int result = gl_wait(gl, block->filled, error);
+	if (result < 0)
+		return result;
 	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, block->buffer);
 	const uint8_t *from = gl->MapBufferRange(GL_PIXEL_PACK_BUFFER, 0, (GLsizeiptr)block->bytes, GL_MAP_READ_BIT);
 	if (!from)
