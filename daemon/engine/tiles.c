@@ -3,17 +3,19 @@
 
 #include "daemon/engine/tiles.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
-bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile_width, uint32_t tile_height)
+int tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile_width, uint32_t tile_height,
+				struct error *error)
 {
 	uint32_t columns = (width + tile_width - 1) / tile_width, rows = (height + tile_height - 1) / tile_height;
 	if (columns * rows > tiles->capacity) {
 		tiles_finish(tiles);
 		tiles->marked = malloc((size_t)columns * rows);
 		if (!tiles->marked)
-			return false;
+			return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", width, height);
 		tiles->capacity = columns * rows;
 	}
 	tiles->width = width;
@@ -24,7 +26,7 @@ bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t 
 	tiles->rows = rows;
 	tiles->count = 0;
 	memset(tiles->marked, 0, (size_t)columns * rows);
-	return true;
+	return 0;
 }
 
 void tiles_finish(struct tiles *tiles)

@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 #include "daemon/engine/bounds.h"
+#include "daemon/error.h"
 
 struct tiles {
 	uint32_t width, height;           /* of the picture, pixels */
@@ -25,8 +26,9 @@ struct box {
 	float left, top, right, bottom;
 };
 
-/* All unmarked. False if memory is out. */
-bool tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile_width, uint32_t tile_height);
+/* All unmarked. 0, or -ENOMEM with a sentence. */
+int tiles_begin(struct tiles *tiles, uint32_t width, uint32_t height, uint32_t tile_width, uint32_t tile_height,
+				struct error *error);
 void tiles_finish(struct tiles *tiles);
 
 /* Several threads may mark at a time. */

@@ -4,7 +4,6 @@
 /* Which triangles of the mesh need what: chunks of them side by side, their lists in drawing order all the same. */
 #include "daemon/engine/warp_triangle.h"
 
-#include <errno.h>
 #include <string.h>
 
 #include "daemon/engine/pool.h"
@@ -109,10 +108,8 @@ static void make_lists(struct warp_mesh *mesh)
 int warp_mesh_begin_tiles(struct warp_mesh *mesh, uint32_t width, uint32_t height, uint32_t level, struct error *error)
 {
 	uint32_t levels_tile = LEVELS_TILE >> level ? LEVELS_TILE : 1u << level;
-	if (tiles_begin(&mesh->low, width, height, LOW_TILE, LOW_TILE) &&
-		tiles_begin(&mesh->levels, width, height, levels_tile, levels_tile))
-		return 0;
-	return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", width, height);
+	const int result = tiles_begin(&mesh->low, width, height, LOW_TILE, LOW_TILE, error);
+	return result < 0 ? result : tiles_begin(&mesh->levels, width, height, levels_tile, levels_tile, error);
 }
 
 static uint8_t doubt(const struct sort *sort, const uint32_t *index)
@@ -233,8 +230,9 @@ int warp_mesh_sort(struct warp_mesh *mesh, float phase, bool tears, bool keep_or
 {
 	const struct plan *plan = mesh->plan;
 	struct sort sort = {.mesh = mesh, .phase = phase, .tears = tears};
-	if (!tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE, FOLD_TILE))
-		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", plan->width, plan->height);
+	const int result = tiles_begin(&mesh->folds, plan->width, plan->height, FOLD_TILE, FOLD_TILE, error);
+	if (result < 0)
+		return result;
 	mesh->keep_order = keep_order;
 	pool_run(mesh->pool, find_kinds, &sort, warp_items(mesh));
 	mesh->too_wild = is_too_wild(mesh);

@@ -203,7 +203,8 @@ static void test_who_waits(void)
 /* Tiles that lie apart in each row: as many rectangles as there can be. */
 static void scatter(struct tiles *tiles)
 {
-	CHECK(tiles_begin(tiles, WIDTH, HEIGHT, 64, 32));
+	struct error error = {""};
+	CHECK_INT(tiles_begin(tiles, WIDTH, HEIGHT, 64, 32, &error), 0);
 	for (uint32_t i = 0; i < tiles->columns * tiles->rows; i++)
 		tiles->marked[i] = i % tiles->columns % 4 == i / tiles->columns % 2;
 }

@@ -334,11 +334,13 @@ static void cover(const struct tiles *tiles, const struct bounds *bounds, uint8_
 static void test_bounds_of_tiles(void)
 {
 	struct tiles tiles = {0};
+	struct error error;
 	uint32_t random = 5;
 	long wrong = 0;
 	for (uint32_t round = 0; round < 400; round++) {
 		const uint32_t gap = 1 + round % 4, rarity = 1 + round / 50;
-		CHECK(tiles_begin(&tiles, 1 + picture_random(&random) % 700, 1 + picture_random(&random) % 300, 64, 32));
+		const uint32_t width = 1 + picture_random(&random) % 700, height = 1 + picture_random(&random) % 300;
+		CHECK_INT(tiles_begin(&tiles, width, height, 64, 32, &error), 0);
 		for (uint32_t i = 0; i < tiles.columns * tiles.rows; i++)
 			tiles.marked[i] = (picture_random(&random) >> 8) % rarity == 0;
 		uint8_t covered[11 * 10] = {0};

@@ -143,8 +143,9 @@ static int upload_row(struct engine *engine, struct layer *layer, uint32_t index
 	row.first = index * row.count;
 	if (!layer->bounds && !planes_changed(engine, row.y, row.rows))
 		return 0;
-	if (!tiles_begin(&executor->intake.sent, engine->width, row.rows, TILE_WIDTH, TILE_HEIGHT))
-		return error_set(error, -ENOMEM, "out of memory for a row of tiles of %u pixels", engine->width);
+	const int result = tiles_begin(&executor->intake.sent, engine->width, row.rows, TILE_WIDTH, TILE_HEIGHT, error);
+	if (result < 0)
+		return result;
 	take(&executor->intake, layer, &row, hashes);
 	if (!find_changed(engine, layer, &row, hashes))
 		return 0;

@@ -3,17 +3,15 @@
 
 #include "daemon/engine/gl/shown.h"
 
-#include <errno.h>
-
 #include "daemon/engine/gl/executor_gl.h"
 
 static int begin_tiles(struct gl_shown *shown, uint32_t width, uint32_t height, struct error *error)
 {
 	struct tiles *const all[] = {&shown->moving, &shown->copied, &shown->written};
-	for (int i = 0; i < 3; i++)
-		if (!tiles_begin(all[i], width, height, TILE_WIDTH, TILE_HEIGHT))
-			return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", width, height);
-	return 0;
+	int result = 0;
+	for (int i = 0; i < 3 && result == 0; i++)
+		result = tiles_begin(all[i], width, height, TILE_WIDTH, TILE_HEIGHT, error);
+	return result;
 }
 
 int gl_shown_begin(struct engine *engine, struct error *error)
@@ -71,9 +69,9 @@ int gl_open_image(struct engine *engine, struct sheet *sheet, struct error *erro
 	const enum picture_id id = engine->job.picture;
 	const struct contents *contents = &executor->contents;
 	struct tiles *leaving = &executor->leaving;
-	if (!tiles_begin(leaving, engine->width, engine->height, TILE_WIDTH, TILE_HEIGHT))
-		return error_set(error, -ENOMEM, "out of memory for the tiles of %u x %u pixels", engine->width,
-						 engine->height);
+	const int result = tiles_begin(leaving, engine->width, engine->height, TILE_WIDTH, TILE_HEIGHT, error);
+	if (result < 0)
+		return result;
 	contents_open(&executor->contents, engine->params.leave_nothing_out ? 0 : engine->job.held, sheet);
 	for (uint32_t tile = 0; tile < contents->columns * contents->rows; tile++) {
 		const uint64_t number = id == PICTURE_SHOWN ? executor->shown.numbers[tile] : contents_of(contents, id, tile);
