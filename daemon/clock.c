@@ -20,6 +20,13 @@ uint64_t clock_monotonic_ns(void)
 	return (uint64_t)now.tv_sec * SECOND + (uint64_t)now.tv_nsec;
 }
 
+void clock_monotonic_wait(uint64_t until_ns)
+{
+	const struct timespec until = timespec_of(until_ns);
+	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR)
+		;
+}
+
 void clock_cond_init(pthread_cond_t *condition)
 {
 	pthread_condattr_t attributes;
@@ -43,10 +50,8 @@ static uint64_t real_now(struct clock *clock)
 
 static void real_wait_until(struct clock *clock, uint64_t time_ns)
 {
-	const struct timespec then = timespec_of(time_ns);
 	(void)clock;
-	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &then, NULL) == EINTR)
-		;
+	clock_monotonic_wait(time_ns);
 }
 
 void clock_init_real(struct clock *clock)

@@ -33,6 +33,8 @@ static inline void clock_wait_until(struct clock *clock, uint64_t time_ns)
 
 /* CLOCK_MONOTONIC, ns: for who is at no clock of its own. Any thread. */
 uint64_t clock_monotonic_ns(void);
+/* Sleeps until then; not at all if it is over. Any thread. */
+void clock_monotonic_wait(uint64_t until_ns);
 
 /* A condition for clock_cond_wait(). */
 void clock_cond_init(pthread_cond_t *condition);

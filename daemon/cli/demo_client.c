@@ -6,7 +6,6 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "client/pursuit.h"
 #include "daemon/clock.h"
@@ -28,13 +27,6 @@ struct demo_client {
 	uint32_t times;
 };
 
-static void sleep_until(uint64_t time_ns)
-{
-	const struct timespec time = {(time_t)(time_ns / 1000000000u), (long)(time_ns % 1000000000u)};
-	while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &time, NULL) == EINTR && clock_monotonic_ns() < time_ns)
-		;
-}
-
 static int wait_for_attach(struct demo_client *client, struct error *error)
 {
 	uint64_t start = clock_monotonic_ns();
@@ -44,7 +36,7 @@ static int wait_for_attach(struct demo_client *client, struct error *error)
 		pursuit_get_status(client->stream, &status);
 		if (status.state == PURSUIT_STATE_ATTACHED)
 			return 0;
-		sleep_until(clock_monotonic_ns() + 5000000);
+		clock_monotonic_wait(clock_monotonic_ns() + 5000000);
 	} while (status.state != PURSUIT_STATE_REFUSED && clock_monotonic_ns() - start < ATTACH_LIMIT_NS);
 	return error_set(error, -ETIMEDOUT, "the daemon did not take the stream: %s", status.message);
 }
@@ -201,7 +193,7 @@ int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(voi
 	while (result == 0 && clock_monotonic_ns() < end && !stop(context)) {
 		if (client->submitted)
 			client->next = next_index(client);
-		sleep_until(client->epoch_ns + scene_source_time(&client->params.rate, client->next));
+		clock_monotonic_wait(client->epoch_ns + scene_source_time(&client->params.rate, client->next));
 		take_keys(client);
 		result = render_one(client, client->next++, error);
 		tell_frame(client);
