@@ -107,5 +107,7 @@ struct scene_pixels {
 	uint8_t *ui;
 };
 bool scene_read(struct scene *scene, const struct scene_pixels *pixels);
+/* Frees the memory of all of them, each NULL or of malloc(), and clears. */
+void scene_pixels_finish(struct scene_pixels *pixels);
 
 #endif

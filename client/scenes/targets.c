@@ -181,3 +181,14 @@ bool scene_read(struct scene *scene, const struct scene_pixels *pixels)
 	free(raw);
 	return gl->GetError() == GL_NO_ERROR;
 }
+
+void scene_pixels_finish(struct scene_pixels *pixels)
+{
+	free(pixels->color);
+	free(pixels->depth);
+	free(pixels->backward);
+	free(pixels->forward);
+	free(pixels->object_id);
+	free(pixels->ui);
+	*pixels = (struct scene_pixels){.color = NULL};
+}

@@ -77,14 +77,8 @@ static bool create_fine(struct scene_source *source, struct error *error)
 
 static void release_pixels(struct scene_source *source)
 {
-	free(source->pixels.color);
-	free(source->pixels.ui);
-	free(source->pixels.depth);
-	free(source->pixels.backward);
-	free(source->pixels.forward);
-	free(source->pixels.object_id);
+	scene_pixels_finish(&source->pixels);
 	free(source->fine_pixels);
-	source->pixels = (struct scene_pixels){0};
 	source->fine_pixels = NULL;
 }
 

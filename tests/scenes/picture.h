@@ -28,12 +28,7 @@ static inline void picture_init(struct picture *picture, uint32_t width, uint32_
 
 static inline void picture_finish(struct picture *picture)
 {
-	free(picture->pixels.color);
-	free(picture->pixels.depth);
-	free(picture->pixels.backward);
-	free(picture->pixels.forward);
-	free(picture->pixels.object_id);
-	free(picture->pixels.ui);
+	scene_pixels_finish(&picture->pixels);
 }
 
 /* Renders with forward motion and reads everything that the scene has. */

@@ -73,10 +73,10 @@ int main(int argc, char **argv)
 								  malloc(count * 4), malloc(count * 4)};
 	uint8_t *out = malloc(count * 4);
 	bool ok = scene_render(scene, &request, &textures, NULL);
-	uint8_t *ui = pixels.ui;
-	if (!textures.ui)
-		pixels.ui = NULL;
-	ok = ok && scene_read(scene, &pixels);
+	struct scene_pixels wanted = pixels;
+	if (!ok || !textures.ui)
+		wanted.ui = NULL;
+	ok = ok && scene_read(scene, &wanted);
 	double most = 0.0, mean = 0.0;
 	for (size_t i = 0; i < count && ok; i++) {
 		double x = (double)pixels.backward[i * 2], y = (double)pixels.backward[i * 2 + 1];
@@ -96,14 +96,10 @@ int main(int argc, char **argv)
 		put(out + i * 4, id >> 24, (id >> 16) & 255, (id >> 8) & 255);
 	}
 	ok = ok && write_png(argv[5], "id", width, height, out);
-	if (ok && pixels.ui)
+	if (ok && wanted.ui)
 		blend_ui(pixels.color, pixels.ui, count);
 	ok = ok && write_png(argv[5], "color", width, height, pixels.color);
-	free(pixels.color);
-	free(pixels.depth);
-	free(pixels.backward);
-	free(pixels.object_id);
-	free(ui);
+	scene_pixels_finish(&pixels);
 	free(out);
 	scene_destroy(&scene);
 	test_context_finish(&context);
