@@ -225,34 +225,44 @@ static bool same_right_half(const uint8_t *a, const uint8_t *b)
 	return true;
 }
 
+/* Two frames, so many intervals apart, of which the first moves by so much and the second by 8 pixels. */
+struct pair {
+	float motion;
+	uint64_t motion_ns; /* that the first's spans; 0: unknown */
+	uint64_t apart;
+};
+
+static void draw_pair(const struct pair *pair, uint8_t *pixels)
+{
+	struct step before = first, now = second;
+	before.motion = pair->motion;
+	before.motion_ns = pair->motion_ns;
+	now.motion = 8.0f;
+	now.id = first.id + pair->apart;
+	now.time_ns = first.time_ns + pair->apart * T_NS;
+	draw_after(&before, &now, pixels);
+}
+
 /* What speeds up evenly is followed as well when frames between were lost, or motion spans another time. */
 static void test_lost_frames(void)
 {
+	static const struct pair neighbours = {7.5f, 0, 1};
+	static const struct {
+		struct pair pair;
+		bool same;
+	} cases[] = {
+		{{7.0f, 0, 2}, true},
+		{{6.0f, 0, 4}, true},
+		/* The same at twice the speed of the middle of two intervals. */
+		{{14.5f, 2 * T_NS, 1}, true},
+		{{7.0f, 0, 1}, false},
+	};
 	static uint8_t next[STRIDE * HEIGHT], other[STRIDE * HEIGHT];
-	struct step now = {.motion = 8.0f, .id = 8, .time_ns = 101 * T_NS, .real_ns = T_NS}, before = first;
-	before.motion = 7.5f;
-	draw_after(&before, &now, next);
-	before.motion = 7.0f;
-	now.id = 9;
-	now.time_ns = 102 * T_NS;
-	draw_after(&before, &now, other);
-	CHECK(same_right_half(next, other));
-	before.motion = 6.0f;
-	now.id = 11;
-	now.time_ns = 104 * T_NS;
-	draw_after(&before, &now, other);
-	CHECK(same_right_half(next, other));
-	/* The same at twice the speed of the middle of two intervals. */
-	before.motion = 14.5f;
-	before.motion_ns = 2 * T_NS;
-	now.id = 8;
-	now.time_ns = 101 * T_NS;
-	draw_after(&before, &now, other);
-	CHECK(same_right_half(next, other));
-	before.motion = 7.0f;
-	before.motion_ns = 0;
-	draw_after(&before, &now, other);
-	CHECK(!same_right_half(next, other));
+	draw_pair(&neighbours, next);
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		draw_pair(&cases[i].pair, other);
+		CHECK_INT(same_right_half(next, other), cases[i].same);
+	}
 }
 
 /* ---- anything ---- */
