@@ -8,15 +8,43 @@
 #include "daemon/engine/now.h"
 #include "daemon/engine/state.h"
 
-int arrivals_check(const struct arrivals *arrivals, const struct engine_image *image, struct error *error)
+struct span {
+	uintptr_t from, to;
+};
+
+static struct span row_of(const struct arrival *arrival, uint32_t row)
 {
+	const uintptr_t from = (uintptr_t)arrival->image.data + row * arrival->image.stride;
+	return (struct span){from, from + 4 * (uintptr_t)arrival->width};
+}
+
+/* Rows lie in memory as in the picture, so those of both are gone through together. */
+static bool overlap(const struct arrival *a, const struct arrival *b)
+{
+	for (uint32_t i = 0, j = 0; i < a->height && j < b->height;) {
+		const struct span one = row_of(a, i), other = row_of(b, j);
+		if (one.from < other.to && other.from < one.to)
+			return true;
+		if (one.from < other.from)
+			i++;
+		else
+			j++;
+	}
+	return false;
+}
+
+int arrivals_check(const struct arrivals *arrivals, const struct engine_image *image, uint32_t width, uint32_t height,
+				   struct error *error)
+{
+	const struct arrival next = {.image = *image, .width = width, .height = height};
 	if (!image->data)
 		return 0;
 	if (image->unfinished && arrivals->count == ENGINE_MAX_UNFINISHED)
 		return error_set(error, -EBUSY, "%d pictures are unfinished: one must be taken first", ENGINE_MAX_UNFINISHED);
 	for (uint32_t i = 0; i < arrivals->count; i++)
-		if (arrivals->slots[(arrivals->first + i) % ENGINE_MAX_UNFINISHED].image.data == image->data)
-			return error_set(error, -EBUSY, "the image's memory is that of an unfinished picture, to be taken first");
+		if (overlap(&arrivals->slots[(arrivals->first + i) % ENGINE_MAX_UNFINISHED], &next))
+			return error_set(error, -EBUSY,
+							 "the image's memory is in part that of an unfinished picture, to be taken first");
 	return 0;
 }
 

@@ -12,6 +12,7 @@
 
 struct arrival {
 	struct engine_image image; /* as it will be given */
+	uint32_t width, height;    /* pixels */
 	uint32_t missing;          /* blocks of rows that the executor has under way; 0: it is there, or lost */
 	bool lost;                 /* the executor's: some never came */
 };
@@ -33,7 +34,11 @@ static inline struct arrival *arrivals_next(struct arrivals *arrivals)
 	return arrivals_at(arrivals, arrivals->count);
 }
 
-/* May the image be drawn to? 0, or -EBUSY with a sentence: there is no room for it, or one of them has its memory. */
-int arrivals_check(const struct arrivals *arrivals, const struct engine_image *image, struct error *error);
+/*
+ * May a picture of that size be drawn to the image? 0, or -EBUSY with a sentence: there is no room for it, or a pixel
+ * of one of them lies where one of its does. What is between the rows is nobody's.
+ */
+int arrivals_check(const struct arrivals *arrivals, const struct engine_image *image, uint32_t width, uint32_t height,
+				   struct error *error);
 
 #endif

@@ -171,7 +171,7 @@ static int check_request(const struct engine *engine, const struct engine_image 
 						 image->stride, 4 * (size_t)engine->width);
 	if (!image->data && image->texture && !engine->executor->info.brought)
 		return error_set(error, -EINVAL, "the image is a texture, but the engine's context is its own");
-	return arrivals_check(&engine->arrivals, image, error);
+	return arrivals_check(&engine->arrivals, image, engine->width, engine->height, error);
 }
 
 static int show(struct engine *engine, const struct engine_request *request, struct engine_image *image,
@@ -210,7 +210,7 @@ static int ask(struct engine *engine, const struct engine_request *request, stru
 			   struct error *error)
 {
 	struct arrival *arrival = arrivals_next(&engine->arrivals);
-	*arrival = (struct arrival){.image = *image};
+	*arrival = (struct arrival){.image = *image, .width = engine->width, .height = engine->height};
 	image->holds = 0;
 	engine->job.arrival = arrival;
 	const int result = show(engine, request, &arrival->image, error);

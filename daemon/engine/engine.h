@@ -133,7 +133,7 @@ struct engine_image {
 	/*
 	 * engine_render() need not wait for the pixels. Those of a texture are there after engine_finish(). With data the
 	 * memory is the engine's until engine_take() gives it back, oldest first: the caller neither reads, writes nor
-	 * frees it, nor has the engine draw anything else there; `holds` is 0 until then.
+	 * frees it, nor has the engine draw anything else to any of its pixels; `holds` is 0 until then.
 	 */
 	bool unfinished;
 };
@@ -217,8 +217,8 @@ void engine_get_size(const struct engine *engine, uint32_t *width, uint32_t *hei
  * it is unfinished, as soon as they are asked for: they come back while the next picture is drawn, or the next real
  * frame begun. With an executor that writes there itself (the CPU, GL on the CPU) they are there at once, and are taken
  * all the same. 0, or a negative errno with a sentence (-EINVAL: the image or what is asked for; -EBUSY:
- * ENGINE_MAX_UNFINISHED pictures are unfinished, or one has this memory; -ENOMEM; -EIO: the context is lost): then the
- * memory is the caller's.
+ * ENGINE_MAX_UNFINISHED pictures are unfinished, or a pixel of one lies where one of this would; -ENOMEM; -EIO: the
+ * context is lost): then the memory is the caller's.
  */
 int engine_render(struct engine *engine, const struct engine_request *request, struct engine_image *image,
 				  struct error *error);
