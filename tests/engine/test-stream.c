@@ -19,8 +19,9 @@ static struct {
 	uint64_t asked, done;       /* commands */
 	uint64_t read[BUFFERS + 1]; /* by buffer: the last command that reads its memory of now */
 	size_t bytes[BUFFERS + 1];
-	GLuint made, bound;
-	bool sound; /* it does not hang, and gives fences */
+	GLuint made, bound, framebuffer;
+	uint64_t pixels[3]; /* read, by framebuffer */
+	bool sound;         /* it does not hang, and gives fences */
 	uint32_t hangs, fenceless, waits;
 	uint8_t memory[READBACK_BLOCK];
 } gpu;
@@ -85,6 +86,16 @@ static void APIENTRY tex_sub_image(GLenum target, GLint level, GLint x, GLint y,
 	gpu.read[gpu.bound] = ++gpu.asked;
 }
 
+static void APIENTRY bind_framebuffer(GLenum target, GLuint framebuffer)
+{
+	CHECK(target == GL_READ_FRAMEBUFFER);
+	gpu.framebuffer = framebuffer;
+}
+
+static void APIENTRY flush(void)
+{
+}
+
 static void APIENTRY pixel_store(GLenum name, GLint value)
 {
 	(void)name;
@@ -99,6 +110,7 @@ static void APIENTRY read_pixels(GLint x, GLint y, GLsizei width, GLsizei height
 	(void)format;
 	(void)type;
 	CHECK((size_t)pixels + 4 * (size_t)width * (size_t)height <= gpu.bytes[gpu.bound]);
+	gpu.pixels[gpu.framebuffer] += (uint64_t)width * (uint64_t)height;
 	gpu.asked++;
 }
 
@@ -140,6 +152,8 @@ static const struct gl gl = {.GenBuffers = gen_buffers,
 							 .MapBufferRange = map,
 							 .UnmapBuffer = unmap,
 							 .TexSubImage2D = tex_sub_image,
+							 .BindFramebuffer = bind_framebuffer,
+							 .Flush = flush,
 							 .PixelStorei = pixel_store,
 							 .ReadPixels = read_pixels,
 							 .FenceSync = fence,
@@ -209,32 +223,86 @@ static void scatter(struct tiles *tiles)
 		tiles->marked[i] = i % tiles->columns % 4 == i / tiles->columns % 2;
 }
 
-/* Two pictures in pieces under way take no more blocks than two whole ones, however many were before; nobody waits. */
-static void test_pieces(void)
+static void test_begin(struct readback *readback)
+{
+	memset(&gpu, 0, sizeof(gpu));
+	gpu.sound = true;
+	memset(readback, 0, sizeof(*readback));
+	readback->buffered = true;
+}
+
+/* Two pictures, of the framebuffers 1 and 2, that nobody waits for. */
+static uint64_t ask_for_two(struct readback *readback, const struct tiles *tiles, struct arrival *arrivals)
 {
 	static uint8_t data[2][4 * WIDTH * HEIGHT];
+	struct error error = {""};
+	uint64_t bytes = 0;
+	gpu.waits = 0;
+	for (uint32_t i = 0; i < 2; i++) {
+		const struct readback_image image = {data[i], 4 * (size_t)WIDTH, tiles, 1 + i};
+		arrivals[i] = (struct arrival){.missing = 0};
+		CHECK_INT(readback_ask(readback, &gl, &image, &arrivals[i], true, &bytes, &error), 0);
+	}
+	CHECK_INT(gpu.waits, 0);
+	return bytes;
+}
+
+/* Two pictures in pieces under way take no more blocks than a whole one and two, however many were before. */
+static void test_pieces(void)
+{
 	static struct readback readback;
 	struct tiles tiles = {.marked = NULL};
 	struct error error = {""};
-	memset(&gpu, 0, sizeof(gpu));
-	gpu.sound = true;
-	readback.buffered = true;
+	test_begin(&readback);
 	scatter(&tiles);
 	for (uint32_t frame = 0; frame < 30; frame++) {
-		struct arrival arrivals[2] = {{.missing = 0}};
-		uint64_t bytes = 0;
-		gpu.waits = 0;
-		for (int i = 0; i < 2; i++) {
-			const struct readback_image image = {data[i], 4 * (size_t)WIDTH, &tiles};
-			CHECK_INT(readback_ask(&readback, &gl, &image, &arrivals[i], true, &bytes, &error), 0);
-		}
-		CHECK_INT(gpu.waits, 0);
-		CHECK(bytes > 0 && bytes < 2 * sizeof(data[0]) / 3);
-		CHECK(readback_bytes(&readback) <= 2 * 16 * READBACK_BLOCK);
+		struct arrival arrivals[2];
+		const uint64_t bytes = ask_for_two(&readback, &tiles, arrivals);
+		CHECK(bytes > 0 && bytes < 2 * UINT64_C(4) * WIDTH * HEIGHT / 3);
 		for (int i = 0; i < 2; i++)
 			CHECK_INT(readback_receive(&readback, &gl, &arrivals[i], &error), 0);
 		CHECK(!arrivals[0].missing && !arrivals[1].missing && !readback.count);
+		CHECK_INT(4 * (gpu.pixels[1] + gpu.pixels[2]), (frame + 1) * bytes);
+		CHECK(readback_bytes(&readback) <= 18 * READBACK_BLOCK);
 	}
+	readback_finish(&readback, &gl);
+	tiles_finish(&tiles);
+}
+
+#define PICTURE_PIXELS ((uint64_t)WIDTH * HEIGHT)
+
+/* What there was no block for is asked for as blocks get free, or before it is drawn over: and of its own framebuffer.
+ */
+static void test_rest(void)
+{
+	static struct readback readback;
+	struct tiles tiles = {.marked = NULL};
+	struct arrival arrivals[2];
+	struct error error = {""};
+	test_begin(&readback);
+	CHECK_INT(tiles_begin(&tiles, WIDTH, HEIGHT, 64, 32, &error), 0);
+	tiles_mark_all(&tiles);
+	CHECK_INT(ask_for_two(&readback, &tiles, arrivals), 8 * PICTURE_PIXELS);
+	CHECK_INT(gpu.pixels[1], PICTURE_PIXELS);
+	CHECK(gpu.pixels[2] > 0 && gpu.pixels[2] < PICTURE_PIXELS / 4);
+	gpu.framebuffer = 0;
+	CHECK_INT(readback_receive(&readback, &gl, &arrivals[0], &error), 0);
+	CHECK_INT(gpu.pixels[2], PICTURE_PIXELS);
+	CHECK(arrivals[1].missing > 0);
+	CHECK_INT(readback_receive(&readback, &gl, &arrivals[1], &error), 0);
+	ask_for_two(&readback, &tiles, arrivals);
+	gpu.framebuffer = 0;
+	CHECK_INT(readback_settle(&readback, &gl, 1, &error), 0);
+	CHECK(gpu.pixels[2] < 2 * PICTURE_PIXELS && gpu.waits == 0);
+	CHECK_INT(readback_settle(&readback, &gl, 2, &error), 0);
+	CHECK_INT(gpu.pixels[2], 2 * PICTURE_PIXELS);
+	CHECK(gpu.waits > 0 && arrivals[0].missing > 0);
+	readback_forget(&readback, &gl);
+	CHECK(arrivals[0].lost && arrivals[1].lost && !arrivals[0].missing && !arrivals[1].missing);
+	ask_for_two(&readback, &tiles, arrivals);
+	readback_forget(&readback, &gl);
+	CHECK(arrivals[1].lost && !arrivals[1].missing);
+	CHECK_INT(readback_bytes(&readback), 18 * READBACK_BLOCK);
 	readback_finish(&readback, &gl);
 	tiles_finish(&tiles);
 }
@@ -244,5 +312,6 @@ int main(void)
 	RUN(test_none_is_overwritten);
 	RUN(test_who_waits);
 	RUN(test_pieces);
+	RUN(test_rest);
 	return test_result();
 }

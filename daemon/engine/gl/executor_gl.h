@@ -76,9 +76,15 @@ static inline struct target *picture_of(const struct engine *engine, enum pictur
 int gl_picture(struct engine *engine, enum picture_id id, const struct target **picture, struct error *error);
 
 /*
+ * The picture is about to be written to: what an unfinished one still has to read there is asked for. Of ORIGINAL for
+ * all that share its texture. 0, or -EIO with a sentence: all is lost.
+ */
+int gl_settle(struct engine *engine, enum picture_id id, struct error *error);
+
+/*
  * The picture goes out to an image that was left with the number job.held: marks in `leaving` which tiles of it the
- * image does not have. gl_close_image() afterwards, if it went well; `bytes`: how many of it went out. 0, or -ENOMEM
- * with a sentence.
+ * image does not have; what an unfinished one still has to read is asked for first. gl_close_image() afterwards, if it
+ * went well; `bytes`: how many of it went out. 0, or a negative errno with a sentence.
  */
 int gl_open_image(struct engine *engine, struct sheet *sheet, struct error *error);
 void gl_close_image(struct engine *engine, const struct sheet *sheet, uint64_t bytes);

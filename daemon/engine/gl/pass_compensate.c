@@ -99,8 +99,9 @@ int gl_picture(struct engine *engine, enum picture_id id, const struct target **
 		id = PICTURE_ORIGINAL;
 	if (!one_of_three || !layers->made || layers->shown == id)
 		return 0;
-	const int result =
-		id == PICTURE_ORIGINAL ? copy_tiles(engine, &layers->kept, *picture, error) : draw(engine, id, error);
+	int result = gl_settle(engine, PICTURE_ORIGINAL, error);
+	if (result == 0)
+		result = id == PICTURE_ORIGINAL ? copy_tiles(engine, &layers->kept, *picture, error) : draw(engine, id, error);
 	if (result == 0)
 		layers->shown = id;
 	return result;

@@ -11,13 +11,13 @@ static void widen_stream(struct engine *engine)
 	stream_widen(&executor->stream, executor->contents.rows * (engine->ui_plane.role ? 2 : 1));
 }
 
-/* The marked tiles of what is bound for reading; there when it returns, or when job.arrival has come. */
-static int read_tiles(struct engine *engine, uint64_t *bytes, struct error *error)
+/* Its marked tiles; there when it returns, or when job.arrival has come. */
+static int read_tiles(struct engine *engine, const struct target *picture, uint64_t *bytes, struct error *error)
 {
 	const struct gl *gl = table_of(engine);
 	struct readback *readback = &gl_of(engine)->readback;
 	const struct engine_image *image = engine->job.image;
-	const struct readback_image to = {image->data, image->stride, &gl_of(engine)->leaving};
+	const struct readback_image to = {image->data, image->stride, &gl_of(engine)->leaving, picture->framebuffer};
 	struct arrival now = {.missing = 0};
 	if (!engine->job.arrival) {
 		const int result = readback_ask(readback, gl, &to, &now, false, bytes, error);
@@ -40,8 +40,7 @@ static int run(struct engine *engine, struct error *error)
 		result = gl_open_image(engine, &sheet, error);
 	if (result < 0)
 		return result;
-	table_of(engine)->BindFramebuffer(GL_READ_FRAMEBUFFER, picture->framebuffer);
-	result = read_tiles(engine, &bytes, error);
+	result = read_tiles(engine, picture, &bytes, error);
 	if (result < 0)
 		return result;
 	engine->report.bytes_down += bytes;

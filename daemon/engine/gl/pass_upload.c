@@ -204,6 +204,8 @@ static int make_room(struct engine *engine, bool ui, bool original, struct error
 static int take_planes(struct engine *engine, int color, int ui, bool original, struct error *error)
 {
 	int result = make_room(engine, ui >= 0, original, error);
+	if (result == 0)
+		result = gl_settle(engine, PICTURE_ORIGINAL, error);
 	if (result < 0)
 		return result;
 	struct layer opaque = layer_of(engine, PICTURE_ORIGINAL, color), layer = {.differs = false};

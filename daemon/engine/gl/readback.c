@@ -3,6 +3,7 @@
 
 #include "daemon/engine/gl/readback.h"
 
+#include <assert.h>
 #include <errno.h>
 #include <string.h>
 
@@ -51,8 +52,19 @@ static void close_oldest(struct readback *readback, const struct gl *gl)
 	readback->count--;
 }
 
+static void close_rest(struct readback_rest *rest)
+{
+	rest->arrival->missing--;
+	rest->arrival = NULL;
+}
+
 void readback_forget(struct readback *readback, const struct gl *gl)
 {
+	struct readback_rest *rest = &readback->rest;
+	if (rest->arrival) {
+		rest->arrival->lost = true;
+		close_rest(rest);
+	}
 	while (readback->count) {
 		block_at(readback, 0)->arrival->lost = true;
 		close_oldest(readback, gl);
@@ -88,6 +100,7 @@ static int empty(const struct readback_block *block, const struct gl *gl, struct
 
 static int receive_oldest(struct readback *readback, const struct gl *gl, struct error *error)
 {
+	assert(readback->count);
 	const int result = empty(block_at(readback, 0), gl, error);
 	if (result < 0)
 		readback_forget(readback, gl);
@@ -96,24 +109,7 @@ static int receive_oldest(struct readback *readback, const struct gl *gl, struct
 	return result;
 }
 
-int readback_receive(struct readback *readback, const struct gl *gl, const struct arrival *arrival, struct error *error)
-{
-	int result = 0;
-	while (arrival->missing && result == 0)
-		result = receive_oldest(readback, gl, error);
-	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-	return result;
-}
-
 /* ---- asked for ---- */
-
-/* A read that is under way: what is asked for, and how many blocks may be. */
-struct asking {
-	const struct readback_image *image;
-	struct arrival *arrival;
-	struct readback_block *open; /* that has room yet; NULL: none */
-	uint32_t limit;
-};
 
 static uint8_t *place_of(const struct readback_image *image, const struct bounds *bounds)
 {
@@ -127,62 +123,90 @@ static void read_at_once(const struct gl *gl, const struct readback_image *image
 				   (GLsizei)(bounds->bottom - bounds->top), gl->pixel_format, gl->pixel_type, place_of(image, bounds));
 }
 
-static void close_block(const struct gl *gl, struct asking *asking)
+static void close_block(struct readback_rest *rest, const struct gl *gl)
 {
-	if (asking->open)
-		asking->open->filled = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-	asking->open = NULL;
+	if (rest->open)
+		rest->open->filled = gl->FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+	rest->open = NULL;
 }
 
-static int open_block(struct readback *readback, const struct gl *gl, struct asking *asking, struct error *error)
+static bool is_full(const struct readback *readback)
 {
-	close_block(gl, asking);
-	const int result = readback->count >= asking->limit ? receive_oldest(readback, gl, error) : 0;
+	return readback->count >= readback->rest.limit;
+}
+
+static int open_block(struct readback *readback, const struct gl *gl, struct error *error)
+{
+	struct readback_rest *rest = &readback->rest;
+	const int result = is_full(readback) ? receive_oldest(readback, gl, error) : 0;
 	if (result < 0)
 		return result;
-	asking->open = block_at(readback, readback->count);
-	*asking->open = (struct readback_block){.buffer = make_buffer(readback, gl), .arrival = asking->arrival};
+	rest->open = block_at(readback, readback->count);
+	*rest->open = (struct readback_block){.buffer = make_buffer(readback, gl), .arrival = rest->arrival};
 	readback->count++;
-	asking->arrival->missing++;
+	rest->arrival->missing++;
 	return 0;
 }
 
-/* Rows of that many bytes for which the open block has room. */
-static uint32_t room(const struct asking *asking, size_t row_bytes)
+/* False: there are no more. */
+static bool find_rows(struct readback_rest *rest)
 {
-	if (!asking->open || asking->open->count == READBACK_PIECES)
-		return 0;
-	return (uint32_t)((READBACK_BLOCK - asking->open->bytes) / row_bytes);
+	if (rest->top < rest->bounds.bottom)
+		return true;
+	if (!tiles_next_bounds(rest->image.tiles, GL_TILES_OF_CALL, &rest->bounds))
+		return false;
+	rest->top = rest->bounds.top;
+	return true;
 }
 
-static void ask_for_piece(const struct gl *gl, struct asking *asking, const struct bounds *bounds)
+/* Of those rows so many as the open block has room for. */
+static uint32_t count_rows(const struct readback_rest *rest)
 {
-	struct readback_block *block = asking->open;
+	const size_t row_bytes = 4 * (size_t)(rest->bounds.right - rest->bounds.left);
+	if (!rest->open || rest->open->count == READBACK_PIECES)
+		return 0;
+	const size_t room = (READBACK_BLOCK - rest->open->bytes) / row_bytes, rows = rest->bounds.bottom - rest->top;
+	return (uint32_t)(room < rows ? room : rows);
+}
+
+static void ask_for_rows(struct readback_rest *rest, const struct gl *gl, uint32_t rows)
+{
+	struct readback_block *block = rest->open;
 	struct readback_piece *piece = &block->pieces[block->count++];
-	const uint32_t width = bounds->right - bounds->left, rows = bounds->bottom - bounds->top;
-	*piece = (struct readback_piece){block->bytes, place_of(asking->image, bounds), asking->image->stride,
+	struct bounds bounds = rest->bounds;
+	const uint32_t width = bounds.right - bounds.left;
+	bounds.top = rest->top;
+	*piece = (struct readback_piece){block->bytes, place_of(&rest->image, &bounds), rest->image.stride,
 									 4 * (size_t)width, rows};
 	block->bytes += piece->row_bytes * rows;
+	rest->top += rows;
 	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, block->buffer);
 	gl->PixelStorei(GL_PACK_ROW_LENGTH, 0);
-	gl->ReadPixels((GLint)bounds->left, (GLint)bounds->top, (GLsizei)width, (GLsizei)rows, gl->pixel_format,
+	gl->ReadPixels((GLint)bounds.left, (GLint)bounds.top, (GLsizei)width, (GLsizei)rows, gl->pixel_format,
 				   gl->pixel_type, (void *)piece->offset);
 }
 
-static int ask_for(struct readback *readback, const struct gl *gl, struct asking *asking, const struct bounds *bounds,
-				   struct error *error)
+/* All of the rest, or as much as there are free blocks for. */
+static int ask_on(struct readback *readback, const struct gl *gl, bool all, struct error *error)
 {
-	const size_t row_bytes = 4 * (size_t)(bounds->right - bounds->left);
-	struct bounds part = *bounds;
+	struct readback_rest *rest = &readback->rest;
 	int result = 0;
-	for (; part.top < bounds->bottom && result == 0; part.top = part.bottom) {
-		if (!room(asking, row_bytes))
-			result = open_block(readback, gl, asking, error);
-		if (result < 0)
+	if (rest->arrival)
+		gl->BindFramebuffer(GL_READ_FRAMEBUFFER, rest->image.framebuffer);
+	while (rest->arrival && result == 0) {
+		const bool more = find_rows(rest);
+		const uint32_t rows = more ? count_rows(rest) : 0;
+		if (rows) {
+			ask_for_rows(rest, gl, rows);
+			continue;
+		}
+		close_block(rest, gl);
+		if (!more)
+			close_rest(rest);
+		else if (all || !is_full(readback))
+			result = open_block(readback, gl, error);
+		else
 			break;
-		const uint32_t rows = room(asking, row_bytes), left = bounds->bottom - part.top;
-		part.bottom = part.top + (rows < left ? rows : left);
-		ask_for_piece(gl, asking, &part);
 	}
 	return result;
 }
@@ -192,25 +216,68 @@ static uint32_t allowed(const struct readback *readback, const struct tiles *til
 {
 	const uint32_t most = (uint32_t)(READBACK_BLOCK / (4 * (size_t)tiles->width));
 	const uint32_t asked = (tiles->height + most - 1) / most;
-	const uint32_t wanted = ahead ? readback->count + asked : buffers(readback);
+	const uint32_t wanted = ahead ? asked + READBACK_SPARE : buffers(readback);
 	const uint32_t least = wanted > READBACK_BLOCKS ? wanted : READBACK_BLOCKS;
 	return least < READBACK_MOST ? least : READBACK_MOST;
+}
+
+static void read_all(const struct gl *gl, const struct readback_image *image)
+{
+	struct bounds bounds = {0};
+	gl->BindFramebuffer(GL_READ_FRAMEBUFFER, image->framebuffer);
+	while (tiles_next_bounds(image->tiles, GL_TILES_OF_CALL, &bounds))
+		read_at_once(gl, image, &bounds);
+}
+
+static uint64_t count_bytes(const struct readback_image *image)
+{
+	struct bounds bounds = {0};
+	uint64_t bytes = 0;
+	while (tiles_next_bounds(image->tiles, GL_TILES_OF_CALL, &bounds))
+		bytes += 4 * (uint64_t)(bounds.right - bounds.left) * (bounds.bottom - bounds.top);
+	return bytes;
 }
 
 int readback_ask(struct readback *readback, const struct gl *gl, const struct readback_image *image,
 				 struct arrival *arrival, bool ahead, uint64_t *bytes, struct error *error)
 {
-	struct asking asking = {.image = image, .arrival = arrival, .limit = allowed(readback, image->tiles, ahead)};
-	struct bounds bounds = {0};
-	int result = 0;
-	while (result == 0 && tiles_next_bounds(image->tiles, GL_TILES_OF_CALL, &bounds)) {
-		*bytes += 4 * (uint64_t)(bounds.right - bounds.left) * (bounds.bottom - bounds.top);
-		if (readback->buffered)
-			result = ask_for(readback, gl, &asking, &bounds, error);
-		else
-			read_at_once(gl, image, &bounds);
+	assert(!readback->rest.arrival);
+	*bytes += count_bytes(image);
+	if (!readback->buffered) {
+		read_all(gl, image);
+		return 0;
 	}
-	close_block(gl, &asking);
+	readback->rest =
+		(struct readback_rest){.arrival = arrival, .image = *image, .limit = allowed(readback, image->tiles, ahead)};
+	arrival->missing++;
+	const int result = ask_on(readback, gl, !ahead, error);
 	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+	return result;
+}
+
+int readback_settle(struct readback *readback, const struct gl *gl, GLuint framebuffer, struct error *error)
+{
+	const struct readback_rest *rest = &readback->rest;
+	if (!rest->arrival || (framebuffer && framebuffer != rest->image.framebuffer))
+		return 0;
+	const int result = ask_on(readback, gl, true, error);
+	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+	return result;
+}
+
+/* ---- received ---- */
+
+int readback_receive(struct readback *readback, const struct gl *gl, const struct arrival *arrival, struct error *error)
+{
+	const bool rest = readback->rest.arrival != NULL;
+	int result = 0;
+	while (arrival->missing && result == 0) {
+		result = receive_oldest(readback, gl, error);
+		if (result == 0)
+			result = ask_on(readback, gl, false, error);
+	}
+	gl->BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+	if (rest)
+		gl->Flush();
 	return result;
 }

@@ -4,8 +4,9 @@
 /*
  * Pixels on their way back from the framebuffer that is bound for reading, rows as they lie. On a GPU by way of GL
  * buffers, block by block: it fills them while the CPU copies others to where they belong, or does something else. Each
- * block holds what was there when it was asked for, whatever is drawn afterwards. A CPU renderer writes to where the
- * pixels belong itself.
+ * block holds what was there when it was asked for, whatever is drawn afterwards. A picture that nobody waits for is
+ * asked for as far as there are blocks; the rest follows as others come back, or when the framebuffer is about to be
+ * drawn to. A CPU renderer writes to where the pixels belong itself.
  */
 #ifndef PURSUIT_ENGINE_GL_READBACK_H
 #define PURSUIT_ENGINE_GL_READBACK_H
@@ -22,7 +23,9 @@
 #define READBACK_BLOCK ((size_t)512 * 1024)
 /* Blocks for pictures that somebody waits for. */
 #define READBACK_BLOCKS 4u
-/* And at most, with others under way: two of 3840x2160; of larger ones some rows are waited for by whoever asks. */
+/* With pictures that nobody waits for: blocks for one, and these. */
+#define READBACK_SPARE 2u
+/* At most: of pictures larger than 3840x2160 some rows are always asked for later. */
 #define READBACK_MOST 128u
 
 /* Rectangles of a block: as many tiles as fill it. */
@@ -45,6 +48,23 @@ struct readback_block {
 	struct arrival *arrival;
 };
 
+struct readback_image {
+	uint8_t *data;
+	size_t stride;             /* bytes, a multiple of 4 */
+	const struct tiles *tiles; /* of the picture: those that are marked are read */
+	GLuint framebuffer;        /* where it is */
+};
+
+/* What is not yet asked for. */
+struct readback_rest {
+	struct arrival *arrival; /* NULL: nothing */
+	struct readback_image image;
+	struct bounds bounds;        /* of the rectangle at work */
+	uint32_t top;                /* its first row that is not asked for */
+	struct readback_block *open; /* that has room yet; NULL: none */
+	uint32_t limit;              /* blocks that may be under way */
+};
+
 /* A zeroed one is ready for use. */
 struct readback {
 	bool buffered;
@@ -52,23 +72,27 @@ struct readback {
 	uint32_t first, count;
 	GLuint spare[READBACK_MOST]; /* buffers */
 	uint32_t spare_count;
-};
-
-struct readback_image {
-	uint8_t *data;
-	size_t stride;             /* bytes, a multiple of 4 */
-	const struct tiles *tiles; /* of the picture: those that are marked are read */
+	struct readback_rest rest;
 };
 
 /*
- * Asks for pixels of an image, counts in `arrival` what is missing, and adds to *bytes how much is asked for; ahead:
- * waits for none, as long as there are blocks; else only for blocks enough to go on with. 0, or -EIO with a sentence:
- * all that was under way is lost.
+ * Asks for pixels of an image, counts in `arrival` what is missing, and adds to *bytes how many come; ahead: waits for
+ * none, but leaves a rest for which there are no blocks; else waits for blocks enough to ask for all. Nothing else is
+ * left to ask for: readback_settle(). 0, or -EIO with a sentence: all that was under way is lost.
  */
 int readback_ask(struct readback *readback, const struct gl *gl, const struct readback_image *image,
 				 struct arrival *arrival, bool ahead, uint64_t *bytes, struct error *error);
 
-/* Until nothing is missing there; what was asked for before is there first. Errors as above. */
+/*
+ * That framebuffer, 0: any, is drawn to from now on, and the tiles of the image are let go: asks for the rest, if it is
+ * of that one. Errors as above.
+ */
+int readback_settle(struct readback *readback, const struct gl *gl, GLuint framebuffer, struct error *error);
+
+/*
+ * Until nothing is missing there; what was asked for before is there first, and what is left is asked for as far as
+ * blocks get free. Errors as above.
+ */
 int readback_receive(struct readback *readback, const struct gl *gl, const struct arrival *arrival,
 					 struct error *error);
 

@@ -24,7 +24,9 @@ int gl_shown_begin(struct engine *engine, struct error *error)
 	shown->before = shown->number;
 	shown->number = 0;
 	shown->numbers = shown->sheet.after;
-	const int result = begin_tiles(shown, engine->width, engine->height, error);
+	int result = begin_tiles(shown, engine->width, engine->height, error);
+	if (result == 0)
+		result = gl_settle(engine, PICTURE_SHOWN, error);
 	return result < 0 ? result : target_resize(target, table_of(engine), engine->width, engine->height, error);
 }
 
@@ -63,13 +65,20 @@ int gl_shown_copy(struct engine *engine, enum picture_id id, struct error *error
 					  : gl_copy_tiles(engine, picture, picture_of(engine, PICTURE_SHOWN), &shown->rectangles, error);
 }
 
+int gl_settle(struct engine *engine, enum picture_id id, struct error *error)
+{
+	return readback_settle(&gl_of(engine)->readback, table_of(engine), picture_of(engine, id)->framebuffer, error);
+}
+
 int gl_open_image(struct engine *engine, struct sheet *sheet, struct error *error)
 {
 	struct executor_gl *executor = gl_of(engine);
 	const enum picture_id id = engine->job.picture;
 	const struct contents *contents = &executor->contents;
 	struct tiles *leaving = &executor->leaving;
-	const int result = tiles_begin(leaving, engine->width, engine->height, TILE_WIDTH, TILE_HEIGHT, error);
+	int result = readback_settle(&executor->readback, table_of(engine), 0, error);
+	if (result == 0)
+		result = tiles_begin(leaving, engine->width, engine->height, TILE_WIDTH, TILE_HEIGHT, error);
 	if (result < 0)
 		return result;
 	contents_open(&executor->contents, engine->params.leave_nothing_out ? 0 : engine->job.held, sheet);
