@@ -122,7 +122,7 @@ static int run(struct engine *engine, struct error *error)
 	int result = make_levels(engine, error);
 	if (result == 0)
 		result = make_low(engine, error);
-	engine->levels_made = engine->levels_everywhere ? LEVELS_ALL : LEVELS_MARKED;
+	engine->levels_made = result < 0 ? LEVELS_NONE : engine->levels_everywhere ? LEVELS_ALL : LEVELS_MARKED;
 	return result;
 }
 

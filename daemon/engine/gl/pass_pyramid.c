@@ -44,7 +44,7 @@ static int run(struct engine *engine, struct error *error)
 	if (engine->levels_everywhere)
 		tiles_mark_all(&engine->mesh.levels);
 	int result = make_levels(engine, error);
-	engine->levels_made = engine->levels_everywhere ? LEVELS_ALL : LEVELS_MARKED;
+	engine->levels_made = result < 0 ? LEVELS_NONE : engine->levels_everywhere ? LEVELS_ALL : LEVELS_MARKED;
 	return result;
 }
 
