@@ -73,7 +73,6 @@ int arguments_read(struct arguments *arguments, int argc, char **argv, struct er
 		if (taken == 0)
 			return refuse(argv[i], error);
 	}
-	/* Users that there are not would lock out whom they were meant to let in. */
 	return setting_check_all(&arguments->settings, error);
 }
 

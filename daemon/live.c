@@ -14,8 +14,7 @@
 enum live_effect live_effect_of(const struct option_row *row)
 {
 	static const char *const mains[] = {
-		"max-clients",  "max-frame-mb", "max-streams",  "max-client-mb",
-		"max-messages", "allow-users",  "allow-groups", "log-level",
+		"max-clients", "max-frame-mb", "max-streams", "max-client-mb", "max-messages", "log-level",
 	};
 	if (option_is_of_picture(row) || strcmp(row->name, "on-client-exit") == 0)
 		return LIVE_NEXT_FRAME;

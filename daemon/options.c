@@ -196,7 +196,7 @@ static const struct option_row rows[] = {
 		   "Messages that one client may send in a second; frames are none."),
 	TEXT(allow_users, "allow-users", OPTION_DAEMON, "",
 		 "Users that may be clients, by name or number, separated by commas; empty, as allow-groups: everybody who can "
-		 "reach the socket."),
+		 "reach the socket. Names are looked up when they are set, not for each client."),
 	TEXT(allow_groups, "allow-groups", OPTION_DAEMON, "", "Groups whose members may be clients."),
 	FLAG(seccomp, "seccomp", OPTION_DAEMON, "no",
 		 "After start-up let the kernel refuse what only a daemon that was taken over would need: other programs, "

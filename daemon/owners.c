@@ -230,6 +230,8 @@ void owners_add(struct live *live, struct owners *owners)
 		{capture_prepare, capture_commit, capture_abandon, owners->capture},
 		{prepare_lab, commit_lab, abandon_lab, owners},
 		{prepare_output, commit_output, abandon_output, owners},
+		/* After the output, which does without main until the end of the second step: an answer may take its time. */
+		{admission_prepare, admission_commit, admission_abandon, owners->admission},
 		{prepare_seccomp, commit_nothing, abandon_nothing, owners},
 	};
 	for (size_t i = 0; i < sizeof(all) / sizeof(all[0]); i++)

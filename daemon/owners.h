@@ -17,6 +17,7 @@
 
 struct owners {
 	struct server *server;
+	struct admission *admission;
 	struct capture *capture;
 	struct lab *lab;
 	struct output *output;

@@ -18,6 +18,8 @@
 /* As many as Linux lets a process have. */
 #define MOST_GROUPS 65536u
 #define NAME_BYTES 64
+/* Of what is known of a user or a group, its members included. */
+#define MOST_ROOM (1u << 22)
 
 struct peer peer_of(int socket)
 {
@@ -63,62 +65,85 @@ static bool number_of(const char *word, unsigned long *number)
 	return *word >= '0' && *word <= '9' && !*end && errno == 0 && *number < UINT32_MAX;
 }
 
-static bool user_of(const char *word, uid_t *uid)
-{
-	unsigned long number;
-	const struct passwd *entry;
-	if (number_of(word, &number)) {
-		*uid = (uid_t)number;
-		return true;
-	}
-	entry = getpwnam(word);
-	if (entry)
-		*uid = entry->pw_uid;
-	return entry != NULL;
-}
-
-static bool group_of(const char *word, gid_t *gid)
-{
-	unsigned long number;
-	const struct group *entry;
-	if (number_of(word, &number)) {
-		*gid = (gid_t)number;
-		return true;
-	}
-	entry = getgrnam(word);
-	if (entry)
-		*gid = entry->gr_gid;
-	return entry != NULL;
-}
-
-int peer_check_users(const char *option, const char *users, struct error *error)
+bool peer_has_names(const char *words)
 {
 	char word[NAME_BYTES];
-	uid_t uid;
-	while (next_word(&users, word))
-		if (!user_of(word, &uid))
-			return error_set(error, -EINVAL, "%s: there is no user \"%s\"", option, word);
+	unsigned long number;
+	while (next_word(&words, word))
+		if (!number_of(word, &number))
+			return true;
+	return false;
+}
+
+/* Calls one of the next two with more and more room. 0 with the number, -ENOENT: there is none, or why it is not known.
+ */
+static int look_up(int (*find)(const char *name, char *room, size_t size, uint32_t *number), const char *name,
+				   uint32_t *number)
+{
+	int result = -ERANGE;
+	for (size_t size = 1024; result == -ERANGE && size <= MOST_ROOM; size *= 4) {
+		char *room = malloc(size);
+		result = room ? find(name, room, size, number) : -ENOMEM;
+		free(room);
+	}
+	return result == -ESRCH ? -ENOENT : result;
+}
+
+static int find_user(const char *name, char *room, size_t size, uint32_t *number)
+{
+	struct passwd entry, *found = NULL;
+	const int result = getpwnam_r(name, &entry, room, size, &found);
+	if (found)
+		*number = entry.pw_uid;
+	return found ? 0 : result ? -result : -ENOENT;
+}
+
+static int find_group(const char *name, char *room, size_t size, uint32_t *number)
+{
+	struct group entry, *found = NULL;
+	const int result = getgrnam_r(name, &entry, room, size, &found);
+	if (found)
+		*number = entry.gr_gid;
+	return found ? 0 : result ? -result : -ENOENT;
+}
+
+static int look_up_words(bool groups, const char *words, uint32_t numbers[PEER_MOST], uint32_t *count,
+						 struct error *error)
+{
+	const char *option = groups ? "allow-groups" : "allow-users", *kind = groups ? "group" : "user";
+	char word[NAME_BYTES];
+	for (*count = 0; *count < PEER_MOST && next_word(&words, word); (*count)++) {
+		unsigned long number;
+		int result = 0;
+		if (number_of(word, &number))
+			numbers[*count] = (uint32_t)number;
+		else if (strlen(word) == NAME_BYTES - 1)
+			result = -ENOENT; /* it was cut */
+		else
+			result = look_up(groups ? find_group : find_user, word, &numbers[*count]);
+		if (result == -ENOENT)
+			return error_set(error, -EINVAL, "%s: there is no %s \"%s\"", option, kind, word);
+		if (result < 0)
+			return error_set(error, result, "%s: the %s \"%s\" cannot be looked up: %s", option, kind, word,
+							 strerror(-result));
+	}
 	return 0;
 }
 
-int peer_check_groups(const char *option, const char *groups, struct error *error)
+int peer_look_up(const char *users, const char *groups, struct peer_list *list, struct error *error)
 {
-	char word[NAME_BYTES];
-	gid_t gid;
-	while (next_word(&groups, word))
-		if (!group_of(word, &gid))
-			return error_set(error, -EINVAL, "%s: there is no group \"%s\"", option, word);
-	return 0;
+	_Static_assert(sizeof(uid_t) == sizeof(uint32_t) && sizeof(gid_t) == sizeof(uint32_t), "as Linux has them");
+	list->everybody = !*users && !*groups;
+	const int result = look_up_words(false, users, list->users, &list->user_count, error);
+	return result < 0 ? result : look_up_words(true, groups, list->groups, &list->group_count, error);
 }
 
 /* ---- one peer ---- */
 
-static bool is_user(const struct peer *peer, const char *users)
+static bool is_user(const struct peer *peer, const struct peer_list *list)
 {
-	char word[NAME_BYTES];
-	uid_t uid;
-	while (next_word(&users, word))
-		if (user_of(word, &uid) && uid == peer->uid)
+	for (uint32_t i = 0; i < list->user_count; i++)
+		if (list->users[i] == peer->uid)
 			return true;
 	return false;
 }
@@ -139,19 +164,21 @@ static gid_t *other_groups(int socket, size_t *count)
 	return groups;
 }
 
-static bool is_member(const struct peer *peer, int socket, const char *list)
+static bool has_group(const struct peer_list *list, gid_t gid)
 {
-	char word[NAME_BYTES];
-	size_t count;
-	gid_t gid, *groups = other_groups(socket, &count);
-	bool member = false;
-	while (!member && next_word(&list, word)) {
-		if (!group_of(word, &gid))
-			continue;
-		member = gid == peer->gid;
-		for (size_t i = 0; i < count && !member; i++)
-			member = groups[i] == gid;
-	}
+	for (uint32_t i = 0; i < list->group_count; i++)
+		if (list->groups[i] == gid)
+			return true;
+	return false;
+}
+
+static bool is_member(const struct peer *peer, int socket, const struct peer_list *list)
+{
+	bool member = has_group(list, peer->gid);
+	size_t count = 0;
+	gid_t *groups = member || list->group_count == 0 ? NULL : other_groups(socket, &count);
+	for (size_t i = 0; i < count && !member; i++)
+		member = has_group(list, groups[i]);
 	free(groups);
 	return member;
 }
@@ -161,11 +188,11 @@ bool peer_is_owner(const struct peer *peer)
 	return peer->uid == 0 || peer->uid == geteuid();
 }
 
-bool peer_allowed(const struct peer *peer, int socket, const char *users, const char *groups)
+bool peer_allowed(const struct peer *peer, int socket, const struct peer_list *list)
 {
-	if (!*users && !*groups)
+	if (list->everybody)
 		return true;
 	if (peer->uid == (uid_t)-1)
 		return false;
-	return peer->uid == geteuid() || is_user(peer, users) || is_member(peer, socket, groups);
+	return peer->uid == geteuid() || is_user(peer, list) || is_member(peer, socket, list);
 }

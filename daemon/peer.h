@@ -10,6 +10,7 @@
 #define PURSUIT_PEER_H
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <sys/types.h>
 
 #include "daemon/error.h"
@@ -29,12 +30,29 @@ struct peer peer_of(int socket);
  */
 int peer_open_process(int socket, pid_t pid);
 
-/* Are all names known? 0 or -EINVAL with a sentence that names the setting (`option`). */
-int peer_check_users(const char *option, const char *users, struct error *error);
-int peer_check_groups(const char *option, const char *groups, struct error *error);
+/* As many words as a setting has room for. */
+#define PEER_MOST 128u
 
-/* `socket` tells the peer's other groups. Names that are not known allow nobody. */
-bool peer_allowed(const struct peer *peer, int socket, const char *users, const char *groups);
+/* Who may be a client, by the numbers that the kernel knows. */
+struct peer_list {
+	bool everybody;
+	uint32_t user_count, group_count;
+	uid_t users[PEER_MOST];
+	gid_t groups[PEER_MOST];
+};
+
+/* Is there one that is no number, and must be looked up? */
+bool peer_has_names(const char *words);
+
+/*
+ * The numbers of both settings. Names are looked up where the machine is set up to: where that is a server it may take
+ * for ever. Any thread. 0, or a negative errno with a sentence that names setting and name: there is none (-EINVAL), or
+ * nobody could tell.
+ */
+int peer_look_up(const char *users, const char *groups, struct peer_list *list, struct error *error);
+
+/* `socket` tells the peer's other groups. */
+bool peer_allowed(const struct peer *peer, int socket, const struct peer_list *list);
 
 /* The daemon's own user, or root: may do to the daemon what would otherwise take away from the others. */
 bool peer_is_owner(const struct peer *peer);

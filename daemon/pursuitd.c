@@ -41,6 +41,7 @@ struct pursuitd {
 	struct loop *loop;
 	struct lab *lab;
 	struct closer *closer;
+	struct admission *admission;
 	struct owners owners;
 	struct output *output;
 	struct live live;
@@ -201,15 +202,18 @@ static int start(struct pursuitd *daemon, struct error *error)
 		return -1;
 	daemon->keyboard =
 		(struct keyboard){.loop = daemon->loop, .log = &daemon->log, .output = daemon->output, .live = &daemon->live};
-	const struct server_params server_params = {daemon->loop,      &daemon->log,   &daemon->clock,
-												&daemon->settings, daemon->output, control_handle,
-												daemon->control,   keyboard_press, &daemon->keyboard};
+	const struct server_params server_params = {daemon->loop,      &daemon->log,     &daemon->clock,  &daemon->settings,
+												daemon->output,    control_handle,   daemon->control, keyboard_press,
+												&daemon->keyboard, daemon->admission};
 	daemon->server = server_create(&server_params, error);
 	if (!daemon->server)
 		return -1;
 	control_set_server(daemon->control, daemon->server);
 	daemon->keyboard.server = daemon->server;
+	if (admission_watch(daemon->admission, daemon->loop, error) < 0)
+		return -1;
 	daemon->owners = (struct owners){.server = daemon->server,
+									 .admission = daemon->admission,
 									 .capture = control_get_capture(daemon->control),
 									 .lab = daemon->lab,
 									 .output = daemon->output,
@@ -273,6 +277,7 @@ static void stop(struct pursuitd *daemon)
 		control_set_server(daemon->control, NULL);
 	watchdog_destroy(&daemon->watchdog);
 	server_destroy(&daemon->server);
+	admission_destroy(&daemon->admission);
 	control_destroy(&daemon->control);
 	output_destroy(&daemon->output);
 	closer_destroy(&daemon->closer);
@@ -300,6 +305,13 @@ int main(int argc, char **argv)
 	}
 	daemon.settings = arguments.settings;
 	log_init(&daemon.log, (enum log_level)daemon.settings.log_level);
+	const struct admission_params admission_params = {.log = &daemon.log, .settings = &daemon.settings};
+	/* Names that there are not would lock out whom they were meant to let in. */
+	daemon.admission = admission_create(&admission_params, &error);
+	if (!daemon.admission) {
+		arguments_finish(&arguments);
+		return usage_error(error.text);
+	}
 	live_init(&daemon.live, &daemon.settings, &arguments.profiles, &daemon.log);
 	memcpy(daemon.live.origins, arguments.origins, sizeof(daemon.live.origins));
 	reload_init(&daemon.reload, &daemon.live, &daemon.log, &arguments, argc, argv);

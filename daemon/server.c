@@ -126,9 +126,9 @@ __attribute__((format(printf, 6, 7))) static void turn_away(struct server *serve
 
 static void add_client(struct server *server, int fd)
 {
-	const struct settings *settings = server->params.settings;
+	const struct admission *admission = server->params.admission;
 	const struct peer peer = peer_of(fd);
-	if (!peer_allowed(&peer, fd, settings->allow_users, settings->allow_groups)) {
+	if (admission && !admission_allows(admission, &peer, fd)) {
 		turn_away(server, fd, PURSUIT_REFUSED_PERMISSION, "uid", peer.uid,
 				  "uid is %u, which may not be a client of this daemon (allow-users, allow-groups)",
 				  (unsigned)peer.uid);

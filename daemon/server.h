@@ -15,6 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "daemon/admission.h"
 #include "daemon/clock.h"
 #include "daemon/error.h"
 #include "daemon/log.h"
@@ -39,6 +40,7 @@ struct server_params {
 	/* A key was pressed in the presenter's window. */
 	void (*key)(void *key_data, const struct presenter_key *key);
 	void *key_data;
+	const struct admission *admission; /* who may be a client; NULL: everybody */
 };
 
 /* Listens. NULL with a sentence. */

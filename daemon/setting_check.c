@@ -8,7 +8,6 @@
 #include <strings.h>
 #include <sys/stat.h>
 
-#include "daemon/peer.h"
 #include "daemon/present/presenter.h"
 #include "daemon/record/pattern.h"
 
@@ -33,10 +32,6 @@ int setting_check(const struct option_row *row, const struct settings *settings,
 {
 	if (strcmp(row->name, "present") == 0)
 		return presenter_check_list(settings->present, error);
-	if (strcmp(row->name, "allow-users") == 0)
-		return peer_check_users(row->name, settings->allow_users, error);
-	if (strcmp(row->name, "allow-groups") == 0)
-		return peer_check_groups(row->name, settings->allow_groups, error);
 	if (strcmp(row->name, "tee") == 0)
 		return check_tee(row->name, settings->tee, error);
 	return 0;

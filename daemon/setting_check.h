@@ -2,8 +2,8 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * Settings that mean something only together with what is linked in or with this machine: methods, presenters, users,
- * formats of files.
+ * Settings that mean something only together with what is linked in or with this machine: methods, presenters, formats
+ * of files. Users and groups are looked up where they are needed (admission.h).
  */
 #ifndef PURSUIT_SETTING_CHECK_H
 #define PURSUIT_SETTING_CHECK_H

@@ -27,24 +27,43 @@ static struct fixture fixture;
 
 /* ---- users and groups ---- */
 
+static bool allowed(const struct peer *peer, const char *users, const char *groups)
+{
+	struct error error = {""};
+	struct peer_list list;
+	CHECK_INT(peer_look_up(users, groups, &list, &error), 0);
+	return peer_allowed(peer, -1, &list);
+}
+
 static void test_lists(void)
 {
 	struct error error = {""};
+	struct peer_list list;
 	const struct peer me = {getpid(), getuid(), getgid()}, stranger = {1, STRANGER, STRANGER},
 					  unknown = {0, (uid_t)-1, (gid_t)-1};
-	CHECK(peer_allowed(&stranger, -1, "", ""));
-	CHECK(!peer_allowed(&stranger, -1, "1,2", ""));
-	CHECK(peer_allowed(&stranger, -1, " 1, 54321 ,2", ""));
-	CHECK(peer_allowed(&stranger, -1, "", "54321"));
-	CHECK(!peer_allowed(&stranger, -1, "nobody-of-that-name", "none"));
-	CHECK(!peer_allowed(&stranger, -1, "5432,543210,54321x,-54321,0x54321", ""));
-	CHECK(peer_allowed(&me, -1, "1", ""));
-	CHECK(!peer_allowed(&unknown, -1, "4294967295,-1", "4294967295"));
-	CHECK_INT(peer_check_users("allow-users", "root,0,54321", &error), 0);
-	CHECK_INT(peer_check_users("allow-users", "root,no-such-user-here", &error), -EINVAL);
-	CHECK_STRING(error.text, "allow-users: there is no user \"no-such-user-here\"");
-	CHECK_INT(peer_check_groups("allow-groups", "no-such-group", &error), -EINVAL);
-	CHECK_INT(peer_check_groups("allow-groups", ",, root", &error), 0);
+	CHECK(allowed(&stranger, "", ""));
+	CHECK(!allowed(&stranger, "1,2", ""));
+	CHECK(allowed(&stranger, " 1, 54321 ,2", ""));
+	CHECK(allowed(&stranger, "", "54321"));
+	CHECK(!allowed(&stranger, ",", ""));
+	CHECK(!allowed(&stranger, "5432,543210", "5432,543210"));
+	CHECK(allowed(&me, "1", ""));
+	CHECK(!allowed(&unknown, "4294967294", "4294967294"));
+	CHECK_INT(peer_look_up("root,0,54321", ",, root", &list, &error), 0);
+	CHECK_INT(list.user_count, 3);
+	CHECK_INT(list.group_count, 1);
+	static const char *const wrong[] = {"no-such-user-here", "54321x", "-54321", "0x54321", "4294967295", "-1"};
+	for (size_t i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++) {
+		char sentence[96], words[64];
+		snprintf(words, sizeof(words), "root,%s", wrong[i]);
+		snprintf(sentence, sizeof(sentence), "allow-users: there is no user \"%s\"", wrong[i]);
+		CHECK(peer_has_names(words));
+		CHECK_INT(peer_look_up(words, "", &list, &error), -EINVAL);
+		CHECK_STRING(error.text, sentence);
+	}
+	CHECK_INT(peer_look_up("", "no-such-group", &list, &error), -EINVAL);
+	CHECK_STRING(error.text, "allow-groups: there is no group \"no-such-group\"");
+	CHECK(!peer_has_names(" 1, 54321 ,2,,"));
 }
 
 /* What a process of another user is answered: the refusal's code, 0 welcome, -1 neither. */
