@@ -11,8 +11,9 @@
 #include "daemon/clock.h"
 #include "figures.h"
 
-#define ATTACH_LIMIT_NS UINT64_C(5000000000)
+#define ATTACH_LIMIT_NS UINT64_C(30000000000)
 #define MAX_TIMES 65536u
+#define LEAST_FRAMES 6u
 
 struct demo_client {
 	struct demo_client_params params;
@@ -188,9 +189,9 @@ int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(voi
 		client->epoch_ns = clock_monotonic_ns() + 10000000;
 	else
 		client->next = next_index(client);
-	uint64_t end = clock_monotonic_ns() + (uint64_t)(seconds * 1e9);
+	const uint64_t end = clock_monotonic_ns() + (uint64_t)(seconds * 1e9), enough = client->submitted + LEAST_FRAMES;
 	int result = 0;
-	while (result == 0 && clock_monotonic_ns() < end && !stop(context)) {
+	while (result == 0 && (clock_monotonic_ns() < end || client->submitted < enough) && !stop(context)) {
 		if (client->submitted)
 			client->next = next_index(client);
 		clock_monotonic_wait(client->epoch_ns + scene_source_time(&client->params.rate, client->next));

@@ -33,7 +33,10 @@ struct demo_client;
 struct demo_client *demo_client_create(const struct demo_client_params *params, struct error *error);
 void demo_client_destroy(struct demo_client **client);
 
-/* Goes on rendering for so many seconds; stops early when `stop` says so (asked once a frame). */
+/*
+ * Goes on rendering for so many seconds, and where a machine is slow until there is something to show, which takes
+ * six frames; stops early when `stop` says so (asked once a frame).
+ */
 int demo_client_run(struct demo_client *client, double seconds, bool (*stop)(void *context), void *context,
 					struct error *error);
 

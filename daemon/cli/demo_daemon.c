@@ -18,8 +18,8 @@
 #include "daemon/options.h"
 #include "interrupt.h"
 
-#define START_LIMIT_MS 20000
-#define STOP_LIMIT_MS 5000
+#define START_LIMIT_MS 60000
+#define STOP_LIMIT_MS 30000
 #define STEP_MS 20
 #define MAX_ARGUMENTS OPTION_ROWS
 #define PATH_SIZE 1024
