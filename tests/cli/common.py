@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -10,12 +11,72 @@ import time
 import unittest
 
 PURSUIT = os.environ.get("PURSUIT", "pursuit")
+# Seconds that something may take on a machine that has much else to do; who waits so long has failed.
+PATIENCE = 60
 
 
-def run(*arguments, **options):
+def hurry(pid):
+    """
+    Makes a process and its children no nicer than this one, where that is permitted. `pursuit demo` makes itself as nice
+    as can be, and who works beside it may leave it next to nothing.
+    """
+    ours = os.getpriority(os.PRIO_PROCESS, 0)
+    try:
+        for task in os.listdir(f"/proc/{pid}/task"):
+            if os.getpriority(os.PRIO_PROCESS, int(task)) > ours:
+                os.setpriority(os.PRIO_PROCESS, int(task), ours)
+        with open(f"/proc/{pid}/task/{pid}/children", encoding="utf-8") as children:
+            for child in children.read().split():
+                hurry(child)
+    except OSError:
+        pass  # it has ended, or that is not permitted
+
+
+def finish(process, patience=600):
+    """Waits for the end of a process that is waited for; its output and what it said of errors."""
+    end = time.monotonic() + patience
+    while True:
+        hurry(process.pid)
+        try:
+            return process.communicate(timeout=0.5)
+        except subprocess.TimeoutExpired:
+            if time.monotonic() > end:
+                process.kill()
+                raise
+
+
+def run(*arguments, patience=600, **options):
     """Runs the command; the result has returncode, stdout and stderr."""
-    options.setdefault("timeout", 240)
-    return subprocess.run([PURSUIT, *map(str, arguments)], capture_output=True, text=True, **options)
+    with subprocess.Popen([PURSUIT, *map(str, arguments)], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True, **options) as process:
+        output, errors = finish(process, patience)
+    return subprocess.CompletedProcess(process.args, process.returncode, output, errors)
+
+
+def soon(question, patience=PATIENCE):
+    """What a function gives as soon as that is true, or what it gives when patience has ended."""
+    end = time.monotonic() + patience
+    while True:
+        last = time.monotonic() > end
+        answer = question()
+        if answer or last:
+            return answer
+        time.sleep(0.05)
+
+
+def listens(path):
+    """Whether somebody takes connections at a socket; it is there a moment before that."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as link:
+        return link.connect_ex(path) == 0
+
+
+def started(daemon, path):
+    """A daemon, as soon as it takes connections."""
+    soon(lambda: listens(path) or daemon.poll() is not None)
+    if not listens(path):
+        daemon.kill()
+        raise AssertionError(f"no daemon at {path}, exit status {daemon.wait()}")
+    return daemon
 
 
 class Case(unittest.TestCase):
@@ -36,12 +97,11 @@ class Case(unittest.TestCase):
 
     def wait_for_frames(self, count, *arguments, **options):
         """Until a daemon has had more real frames than that, however long it takes where others have the processors."""
-        for _ in range(600):
+        def shown():
             result = run("status", "--json", *arguments, **options)
-            if result.returncode == 0 and json.loads(result.stdout)["real_frames"] > count:
-                return
-            time.sleep(0.1)
-        self.fail("no frames arrive")
+            return result.returncode == 0 and json.loads(result.stdout)["real_frames"] > count
+
+        self.assertTrue(soon(shown), "no frames arrive")
 
     def record(self, name, **options):
         """A small recording of a scene; options as --name value, underscores for dashes."""

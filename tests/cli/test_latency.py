@@ -3,11 +3,10 @@
 import json
 import os
 import subprocess
-import time
 import unittest
 import xml.etree.ElementTree
 
-from common import PURSUIT, Case
+from common import PURSUIT, Case, listens, soon
 
 COLUMNS = ("vblank,frame_id,show,phase,method,code,level,submit_ns,intake_ns,target_ns,ready_ns,flip_ns,event_ns,"
            "edge_ns,photon_ns,trigger_ns,set_ns,flip_source,late,skipped,edge_lost,photon_lost")
@@ -118,11 +117,10 @@ class Live(Case):
         self.addCleanup(running.stderr.close)
         self.addCleanup(running.wait)
         self.addCleanup(running.terminate)
-        deadline = time.monotonic() + 60
-        while not os.path.exists(path):
-            if running.poll() is not None or time.monotonic() > deadline:
-                self.skipTest("the daemon does not start here: " + running.stderr.read())
-            time.sleep(0.02)
+        soon(lambda: listens(path) or running.poll() is not None)
+        if running.poll() is not None:
+            self.skipTest("the daemon does not start here: " + running.stderr.read())
+        self.assertTrue(listens(path))
         return path
 
     def test_without_lab(self):
@@ -136,7 +134,12 @@ class Live(Case):
     def test_with_lab(self):
         socket = self.daemon("--latency", "--gpio-line", "17", "--gpio-chip", "no-such-chip")
         self.assertIn("has no row yet", self.must("latency", "--socket", socket, status=1).stderr)
-        text = self.must("top", "--once", "--socket", socket, "--interval-ms", "100").stdout
+
+        def look():
+            return self.must("top", "--once", "--socket", socket, "--interval-ms", "100").stdout
+
+        soon(lambda: "no-such-chip" in look())  # a thread of its own has looked for the line
+        text = look()
         self.assertIn("no stream", text)
         self.assertRegex(text, "marker    MISSING: gpio-line 17: gpio-chip: there is no chip \"no-such-chip\"")
         self.assertNotIn("\033", text)

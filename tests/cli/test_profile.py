@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-import time
 
 import common
 
@@ -137,7 +136,7 @@ class Profile(common.Case):
         self.write("# first\n")
         running = [subprocess.Popen([common.PURSUIT, "profile", "set", f"game{i}", f"cell={i + 10}", "--config", self.file],
                                     env=self.environment) for i in range(12)]
-        self.assertEqual([process.wait(120) for process in running], [0] * 12)
+        self.assertEqual([process.wait(2 * common.PATIENCE) for process in running], [0] * 12)
         everything = json.loads(self.profile("--json").stdout)["applications"]
         self.assertEqual(everything, {f"game{i}": {"cell": str(i + 10)} for i in range(12)})
 
@@ -159,10 +158,7 @@ class Profile(common.Case):
         with open(self.path("log"), "w") as log:
             daemon = subprocess.Popen([PURSUITD, "--socket", socket, "--config", self.file], stderr=log)
         try:
-            for _ in range(600):
-                if os.path.exists(socket):
-                    break
-                time.sleep(0.05)
+            common.started(daemon, socket)
             found = json.loads(self.must("profile", "--json", env=self.environment).stdout)
             self.assertEqual(found["file"], os.path.realpath(self.file))
             self.must("profile", "set", "race", "cell=20", env=self.environment)
@@ -173,7 +169,7 @@ class Profile(common.Case):
             self.assertIn("the running daemon does not read", other.stderr)
         finally:
             daemon.send_signal(signal.SIGTERM)
-            self.assertEqual(daemon.wait(60), 0)
+            self.assertEqual(daemon.wait(2 * common.PATIENCE), 0)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ import json
 import os
 import signal
 import subprocess
-import time
 
 import common
 
@@ -21,14 +20,11 @@ class Settings(common.Case):
             pass
         self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--method", "hold", "--config", self.file],
                                        stderr=self.log)
-        for _ in range(600):
-            if os.path.exists(self.socket) or self.daemon.poll() is not None:
-                break
-            time.sleep(0.05)
+        common.started(self.daemon, self.socket)
 
     def tearDown(self):
         self.daemon.send_signal(signal.SIGTERM)
-        status = self.daemon.wait(60)
+        status = self.daemon.wait(2 * common.PATIENCE)
         self.log.close()
         super().tearDown()
         self.assertEqual(status, 0)
@@ -89,10 +85,7 @@ class Settings(common.Case):
         self.assertEqual(origin("cell"), ["8", "default"])
         with open(self.file, "w") as out:
             out.write("# a comment\ncell = 16\nrefresh = 60\n")
-        for _ in range(200):
-            if origin("refresh") == ["60", "configuration"]:
-                break
-            time.sleep(0.05)
+        common.soon(lambda: origin("refresh") == ["60", "configuration"])
         self.assertEqual(origin("refresh"), ["60", "configuration"])
         text = self.get("cell", "--long")
         self.assertIn(f"# from: configuration file {self.file}:2\n", text)
@@ -130,10 +123,7 @@ class Settings(common.Case):
         self.assertEqual([state for state, _ in look()], ["works", "works"])
         with open(self.file, "w") as out:
             out.write("cell = 16\ncell = none\n")
-        for _ in range(200):
-            if look()[1][0] != "works":
-                break
-            time.sleep(0.05)
+        common.soon(lambda: look()[1][0] != "works")
         self.assertEqual(look()[1], ("limit", f"${{EDITOR:-vi}} +2 {self.file}"))
 
     def test_no_daemon(self):

@@ -65,24 +65,18 @@ class Style(common.Case):
             common.run(*made).check_returncode()
         cls.log = open(cls.folder + "/log", "w")
         cls.daemon = subprocess.Popen([PURSUITD, "--socket", cls.socket, "--latency"], stderr=cls.log)
-        for _ in range(600):
-            if os.path.exists(cls.socket) or cls.daemon.poll() is not None:
-                break
-            time.sleep(0.05)
+        common.started(cls.daemon, cls.socket)
         cls.client = subprocess.Popen([EXAMPLE, "--seconds", "3000"], stdout=cls.log, stderr=cls.log,
                                       env={**os.environ, "PURSUIT_SOCKET": cls.socket})
-        for _ in range(600):
-            status = common.run("status", "--json", "--socket", cls.socket).stdout
-            if status and json.loads(status)["real_frames"] > 60:
-                break
-            time.sleep(0.1)
+        shown = common.soon(lambda: json.loads(common.run("status", "--json", "--socket", cls.socket).stdout)["real_frames"] > 60)
+        assert shown, "no frames arrive"
 
     @classmethod
     def tearDownClass(cls):
         cls.client.terminate()
         cls.client.wait()
         cls.daemon.send_signal(signal.SIGTERM)
-        cls.daemon.wait(60)
+        cls.daemon.wait(2 * common.PATIENCE)
         cls.log.close()
         shutil.rmtree(cls.folder, ignore_errors=True)
 
@@ -106,14 +100,17 @@ class Style(common.Case):
         process = subprocess.Popen([common.PURSUIT, *arguments], stdin=subprocess.DEVNULL, stdout=slave, stderr=slave,
                                    env={**os.environ, "TERM": "xterm", **environment})
         os.close(slave)
-        text = b""
-        while select.select([master], [], [], 240)[0]:
+        text, end = b"", time.monotonic() + 600
+        while time.monotonic() < end:
+            common.hurry(process.pid)
+            if not select.select([master], [], [], 0.5)[0]:
+                continue
             try:
                 text += os.read(master, 65536)
             except OSError:
                 break
         os.close(master)
-        return text.decode(), process.wait(240)
+        return text.decode(), process.wait(600)
 
     def test_every_verb_is_here(self):
         self.assertEqual(sorted(self.verbs()), sorted(WORK))
@@ -177,8 +174,10 @@ class Style(common.Case):
         """What could not be written is not done."""
         for verb, listed in WORK.items():
             with self.subTest(verb=verb), open("/dev/full", "w") as full:
-                result = subprocess.run([common.PURSUIT, verb, *self.words(listed), *JSON.get(verb, ["--json"])],
-                                        stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
+                words = [verb, *self.words(listed), *JSON.get(verb, ["--json"])]
+                with subprocess.Popen([common.PURSUIT, *words], stdout=full, stderr=subprocess.PIPE, text=True) as process:
+                    errors = common.finish(process)[1]
+                result = subprocess.CompletedProcess(words, process.returncode, None, errors)
                 self.check_unwritten(f"pursuit {verb}", result, "No space left on device")
 
     def check_unwritten(self, program, result, reason):
@@ -191,7 +190,7 @@ class Style(common.Case):
         words = ["replay", *self.words(WORK["replay"]), "--json"]
         with open("/dev/full", "w") as full:
             result = subprocess.run([common.PURSUIT, *words, "-"], stdout=full, stderr=subprocess.PIPE, text=True,
-                                    timeout=240)
+                                    timeout=600)
             self.check_unwritten("pursuit replay", result, "No space left on device")
         result = self.must(*words, "/dev/full", status=1)
         self.assertRegex(result.stderr, r"(?m)^pursuit replay: /dev/full: not written whole: No space left on device$")
@@ -202,7 +201,7 @@ class Style(common.Case):
             words = [common.PURSUIT, verb, *self.words(WORK[verb])]
             with self.subTest(verb=verb):
                 result = subprocess.run(["sh", "-c", 'exec "$@" >&-', "sh", *words], stderr=subprocess.PIPE, text=True,
-                                    timeout=240)
+                                    timeout=600)
                 self.check_unwritten(f"pursuit {verb}", result, "Bad file descriptor")
         for program in [common.PURSUIT, "--version"], [PURSUITD, "--version"]:
             result = subprocess.run(["sh", "-c", 'exec "$@" >&- 2>&-', "sh", *program], check=False)
@@ -212,7 +211,7 @@ class Style(common.Case):
         for program in [common.PURSUIT, "--help"], [common.PURSUIT, "--version"], [common.PURSUIT, "record", "--help"], \
                 [PURSUITD, "--help"], [PURSUITD, "--version"], [PURSUITD, "--print-config"]:
             with self.subTest(program=program), open("/dev/full", "w") as full:
-                result = subprocess.run(program, stdout=full, stderr=subprocess.PIPE, text=True, timeout=240)
+                result = subprocess.run(program, stdout=full, stderr=subprocess.PIPE, text=True, timeout=600)
                 self.assertEqual(result.returncode, 1)
                 self.assertRegex(result.stderr, r"^pursuit[a-z ]*: standard output cannot be written: No space left on device\n$")
 

@@ -17,6 +17,7 @@ import common
 
 PURSUITD, EXAMPLE = os.environ["PURSUITD"], os.environ["EXAMPLE_MEMORY"]
 ASK, ANSWER = b"\x1b[5n", b"\x1b[0n"
+ECHO = b"^[[0n"  # of an answer that comes when top has left the terminal
 ENTER, LEAVE = b"\x1b[?1049h\x1b[?25l", b"\x1b[?25h\x1b[?1049l"
 
 
@@ -52,11 +53,8 @@ class Top(common.Case):
         super().setUp()
         self.socket = self.path("socket")
         self.log = open(self.path("log"), "w+")
-        self.daemon = subprocess.Popen([PURSUITD, "--socket", self.socket, "--method", "hold"], stderr=self.log)
-        for _ in range(600):
-            if os.path.exists(self.socket) or self.daemon.poll() is not None:
-                break
-            time.sleep(0.05)
+        self.daemon = common.started(
+            subprocess.Popen([PURSUITD, "--socket", self.socket, "--method", "hold"], stderr=self.log), self.socket)
         self.top = None
 
     def tearDown(self):
@@ -64,7 +62,7 @@ class Top(common.Case):
             self.top.kill()
             self.top.wait()
         self.daemon.send_signal(signal.SIGTERM)
-        self.daemon.wait(60)
+        self.daemon.wait(2 * common.PATIENCE)
         self.log.close()
         super().tearDown()
 
@@ -91,7 +89,7 @@ class Top(common.Case):
             while ASK in self.bytes:
                 picture, self.bytes = self.bytes.split(ASK, 1)
                 self.pictures.append(picture)
-                self.screen.put(picture.decode())
+                self.screen.put(picture.replace(ECHO, b"").decode())
                 if self.answering:
                     os.write(self.master, ANSWER)
 
@@ -115,18 +113,29 @@ class Top(common.Case):
             self.assertLess(time.monotonic(), end, f"{len(self.pictures)} pictures, not {count}")
             self.pump(0.1)
 
+    def has_left(self):
+        """As often as it has entered."""
+        sent = b"".join(self.pictures) + self.bytes
+        return sent.count(LEAVE) == sent.count(ENTER)
+
+    def steps(self, pictures):
+        """Seconds from one picture to the next, by the time that they show, which is all that changes without clients."""
+        seconds = [int(shown[1]) for picture in pictures if (shown := re.search(rb"up (\d+) s", picture))]
+        return [later - earlier for earlier, later in zip(seconds, seconds[1:])]
+
     def press(self, keys):
         os.write(self.master, keys.encode())
 
     def ends(self, status):
         """The terminal is as it was before."""
-        end = time.monotonic() + 60
+        end = time.monotonic() + common.PATIENCE
         while self.top.poll() is None and time.monotonic() < end:
             self.pump(0.05)
+        self.assertEqual(self.top.poll(), status)
+        while not self.has_left() and time.monotonic() < end:
+            self.pump(0.05)
         self.pump(0.2)
-        self.assertEqual(self.top.wait(1), status)
-        sent = b"".join(self.pictures) + self.bytes
-        self.assertEqual(sent.count(LEAVE), sent.count(ENTER))
+        self.assertTrue(self.has_left())
         self.assertEqual(termios.tcgetattr(self.slave), self.before)
         os.close(self.master)
         os.close(self.slave)
@@ -186,15 +195,19 @@ class Top(common.Case):
     def test_a_slow_line_gets_no_more_than_it_shows(self):
         self.start(answering=True)
         self.wait_for("m method")
-        self.pump(0.5)
+        self.wait_for_pictures(3)
         self.answering = False
-        self.pump(0.4)
         before = len(self.pictures)
-        self.pump(2)
-        self.assertLessEqual(len(self.pictures) - before, 1)
-        shown = len(self.pictures)
+        self.wait_for_pictures(before + 3)
+        # It waits five seconds for each answer; who is kept from running sees some of them late.
+        steps = self.steps(self.pictures[before:])
+        self.assertGreater(max(steps), 3, steps)
+        self.answering = True
         os.write(self.master, ANSWER)
-        self.wait_for_pictures(shown + 1)
+        before = len(self.pictures)
+        self.wait_for_pictures(before + 4)
+        steps = self.steps(self.pictures[before:])
+        self.assertLess(min(steps), 4, steps)
         self.press("q")
         self.ends(0)
 
@@ -202,9 +215,8 @@ class Top(common.Case):
         self.start(answering=False)
         self.wait_for("m method")
         self.wait_for_pictures(4)
-        seconds = [int(shown[1]) for picture in self.pictures if (shown := re.search(rb"up (\d+) s", picture))]
         # Each picture would take five seconds if top waited for an answer.
-        self.assertLess(min(later - earlier for earlier, later in zip(seconds, seconds[1:])), 4, seconds)
+        self.assertLess(min(self.steps(self.pictures)), 4)
         self.press("q")
         self.ends(0)
 
@@ -238,10 +250,12 @@ class Top(common.Case):
         self.start()
         self.wait_for("m method")
         self.press("\x1a")
-        for _ in range(200):
+
+        def stopped():
             self.pump(0.05)
-            if os.waitid(os.P_PID, self.top.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT):
-                break
+            return os.waitid(os.P_PID, self.top.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT)
+
+        self.assertTrue(common.soon(stopped))
         self.assertEqual(termios.tcgetattr(self.slave), self.before)
         self.screen.resize(100, 40)
         self.top.send_signal(signal.SIGCONT)
@@ -284,9 +298,12 @@ class Top(common.Case):
             text = self.must("top", "--once", "--interval-ms", "500", "--socket", self.socket).stdout
             self.assertNotIn("\x1b", text)
             self.assertNotIn("\x07", text)
-            figures = json.loads(self.must("top", "--json", "--interval-ms", "500", "--socket", self.socket).stdout)
-            self.assertGreater(figures["now"]["real_hz"], 0)
-            self.assertGreater(figures["now"]["submit_to_flip_p99_ms"], 0)
+
+            def figures():
+                now = json.loads(self.must("top", "--json", "--interval-ms", "500", "--socket", self.socket).stdout)["now"]
+                return (now["real_hz"] or 0) > 0 and (now["submit_to_flip_p99_ms"] or 0) > 0
+
+            self.assertTrue(common.soon(figures))
         finally:
             client.terminate()
             client.wait()
