@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Every command that README, docs/ and --help show is run as it is written, made small, or is on a list with the reason."""
+import json
 import os
 import re
 import shutil
@@ -7,7 +8,6 @@ import signal
 import stat
 import subprocess
 import sys
-import time
 
 import common
 
@@ -82,9 +82,11 @@ class Commands(common.Case):
             file.write(f"#!{sys.executable}\n{script}")
         os.chmod(path, stat.S_IRWXU)
 
-    def shell(self, command, **options):
-        return subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=self.folder, env=self.environment, timeout=400,
-                              capture_output=True, text=True, **options)
+    def shell(self, command):
+        with subprocess.Popen(["bash", "-o", "pipefail", "-c", command], cwd=self.folder, env=self.environment, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            output, errors = common.finish(process)
+        return subprocess.CompletedProcess(command, process.returncode, output, errors)
 
     def prepare(self):
         """What the examples take for granted: recordings, sequences of images, logs, an earlier report."""
@@ -100,23 +102,39 @@ class Commands(common.Case):
                           "pursuit report --scenes fan --out before " + SMALL["report"])
         self.assertEqual(made.returncode, 0, made.stderr)
         for name in "run.csv", "before.bin", "after.bin":
-            self.daemon(f"pursuitd --latency-log {name}", client=True)
+            self.daemon(f"pursuitd --latency-log {name}")
 
-    def daemon(self, command, client=False):
-        """Starts one, lets it live a while, ends it."""
+    def daemon(self, command):
+        """Starts one, shows it some frames of a client, ends it."""
+        environment = {**self.environment, "PURSUIT_SOCKET": self.path("other")}
         process = subprocess.Popen(["bash", "-c", "exec " + command], cwd=self.folder, stderr=subprocess.PIPE, text=True,
-                                   env={**self.environment, "PURSUIT_SOCKET": self.path("other")})
-        game = client and subprocess.Popen([EXAMPLE, "--seconds", "60"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                           env={**self.environment, "PURSUIT_SOCKET": self.path("other")})
-        end = time.monotonic() + 100
-        while not os.path.exists(self.path("other")) and process.poll() is None and time.monotonic() < end:
-            time.sleep(0.05)
-        time.sleep(2 if client else 0.2)
-        if game:
-            game.kill()
-            game.wait()
-        process.send_signal(signal.SIGTERM)
-        said = process.communicate(timeout=100)[1]
+                                   env=environment)
+        game = None
+        try:
+            common.started(process, self.path("other"))
+            game = subprocess.Popen([EXAMPLE, "--seconds", "3000"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                    env=environment)
+            self.wait_for_frames(40, env=environment)
+        finally:
+            if game:
+                game.kill()
+                game.wait()
+            process.send_signal(signal.SIGTERM)
+            said = process.communicate(timeout=2 * common.PATIENCE)[1]
+        self.assertEqual(process.returncode, 0, f"{command}: {said}")
+
+    def record_live(self, command):
+        """Of a daemon: until there are frames in it, for which nobody knows how long it takes."""
+        process = subprocess.Popen(["bash", "-c", "exec " + re.sub("--seconds .*", "--seconds 3000", command)], cwd=self.folder,
+                                   env=self.environment, stderr=subprocess.PIPE, text=True)
+
+        def recorded():
+            status = json.loads(common.run("status", "--json", env=self.environment).stdout)
+            return process.poll() is not None or status.get("recording", {}).get("frames", 0) > 5
+
+        self.assertTrue(common.soon(recorded), command)
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=2 * common.PATIENCE)[1]
         self.assertEqual(process.returncode, 0, f"{command}: {said}")
 
     def smaller(self, command):
@@ -134,6 +152,16 @@ class Commands(common.Case):
         first, pipe, rest = command.partition(" | ")
         return f"{first} {extra}{pipe}{rest}"
 
+    def try_with_frames(self, command):
+        """Again if a daemon had too few frames in so short a time."""
+        def attempt():
+            results.append(self.shell(command))
+            return not re.search("no frame came|at least two are needed", results[-1].stderr)
+
+        results = []
+        common.soon(attempt)
+        return results[-1]
+
     def try_command(self, command):
         if command in NAMED:
             self.used.add(command)
@@ -145,9 +173,12 @@ class Commands(common.Case):
                     self.assertTrue(os.path.exists(os.path.join(TOP, command.split()[0])) or "-" in command, command)
                 return
         if command.startswith("pursuitd") and not re.search("--(help|print-config|version)", command):
-            self.daemon(command, client=True)
+            self.daemon(command)
             return
-        result = self.shell(self.smaller(command))
+        if command.startswith("pursuit record") and "--scene" not in command:
+            self.record_live(command)
+            return
+        result = self.try_with_frames(self.smaller(command))
         allowed = (0, 1) if command.startswith(MAY_FAIL) else (0,)
         self.assertIn(result.returncode, allowed, f"{command}\n{result.stdout[-600:]}{result.stderr[-1200:]}")
 
@@ -181,7 +212,7 @@ class Commands(common.Case):
             game.kill()
             game.wait()
             daemon.send_signal(signal.SIGTERM)
-            daemon.wait(100)
+            daemon.wait(2 * common.PATIENCE)
         self.assertEqual(self.used, set(NOT_RUN) | NAMED, "a reason that nothing needs any more")
 
 

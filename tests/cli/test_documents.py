@@ -7,7 +7,7 @@ import signal
 import struct
 import subprocess
 import sys
-import time
+import threading
 import unittest
 
 import common
@@ -79,15 +79,13 @@ class PythonClient(common.Case):
     def tearDown(self):
         if self.daemon:
             self.daemon.send_signal(signal.SIGTERM)
-            self.daemon.wait(60)
+            self.daemon.wait(2 * common.PATIENCE)
         super().tearDown()
 
     def start(self):
-        self.daemon = subprocess.Popen([os.environ["PURSUITD"], "--present", "headless", "--refresh", "60"],
-                                       env=self.environment, stderr=subprocess.DEVNULL)
-        end = time.monotonic() + 60
-        while not os.path.exists(self.path("socket")) and time.monotonic() < end:
-            time.sleep(0.05)
+        self.daemon = common.started(
+            subprocess.Popen([os.environ["PURSUITD"], "--present", "headless", "--refresh", "60"], env=self.environment,
+                             stderr=subprocess.DEVNULL), self.path("socket"))
 
     def client(self, *arguments):
         return subprocess.Popen([sys.executable, os.environ["PYTHON_CLIENT"], *arguments], env=self.environment, text=True,
@@ -95,14 +93,18 @@ class PythonClient(common.Case):
 
     def test_frames_are_shown(self):
         self.start()
-        client = self.client("--seconds", "4", "--fps", "20")
-        output, error = client.communicate(timeout=200)
-        self.assertEqual(client.returncode, 0, error)
+        for seconds in 4, 40, 120:  # where others have the processors, few frames come of many seconds
+            client = self.client("--seconds", str(seconds), "--fps", "20")
+            output, error = client.communicate(timeout=600)
+            self.assertEqual(client.returncode, 0, error)
+            shown = re.findall(r"frame (\d+): shown ([\d.]+) ms after its submit, (\d+) vblanks, (\d+) in-betweens", output)
+            in_betweens = sum(int(one[3]) for one in shown)
+            if len(shown) > 20 and in_betweens > 10:
+                break
         self.assertIn("attached to pursuitd", output)
         self.assertIn("display: 60.00 Hz", output)
-        shown = re.findall(r"frame (\d+): shown ([\d.]+) ms after its submit, (\d+) vblanks, (\d+) in-betweens", output)
         self.assertGreater(len(shown), 20)
-        self.assertGreater(sum(int(one[3]) for one in shown), 10)
+        self.assertGreater(in_betweens, 10)
         ids = [int(one) for one in re.findall(r"^frame (\d+)", output, re.M)]
         self.assertEqual(ids, sorted(set(ids)))
         self.assertNotIn("refused", output)
@@ -112,19 +114,27 @@ class PythonClient(common.Case):
     def test_its_motion_is_right(self):
         """check-stream compares motion with what the picture does."""
         self.start()
-        client = self.client("--seconds", "600", "--fps", "20")
+        client = self.client("--seconds", "3000", "--fps", "20")
+        reader = threading.Thread(target=client.communicate)  # or the client would wait for somebody who reads
+        reader.start()
         self.wait_for_frames(5, env=self.environment)
-        found = common.run("check-stream", "--seconds", "3", "--json", env=self.environment)
+
+        def look():
+            found = common.run("check-stream", "--seconds", "3", "--json", env=self.environment)
+            report = json.loads(found.stdout or "{}")
+            return report.get("pairs", 0) > 5 and (found, report)
+
+        looked = common.soon(look)
         client.terminate()
-        client.communicate(timeout=200)
-        report = json.loads(found.stdout)
+        reader.join()
+        self.assertTrue(looked, "six pairs of frames are never there")
+        found, report = looked
         mistakes = [one for one in report["findings"] if one["code"].startswith(("motion", "depth", "jitter", "no-"))]
         self.assertEqual(mistakes, [], found.stdout + found.stderr)
-        self.assertGreater(report["pairs"], 5)
 
     def test_without_a_daemon(self):
         client = self.client("--seconds", "1")
-        _, error = client.communicate(timeout=200)
+        _, error = client.communicate(timeout=600)
         self.assertEqual(client.returncode, 1)
         self.assertIn("no daemon answers", error)
 

@@ -4,7 +4,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 import unittest
 
 import common
@@ -24,33 +23,37 @@ class Integration(common.Case):
     def test_without_a_daemon(self):
         for step in STEPS:
             with self.subTest(step=step):
-                result = subprocess.run([step, "--seconds", "0.3"], env=self.environment(), timeout=240)
+                result = subprocess.run([step, "--seconds", "0.3"], env=self.environment(), timeout=600)
                 self.assertEqual(result.returncode, 0)
 
     def check(self, step):
         daemon = start([PURSUITD, "--present", "headless"], self.environment())
         game = None
         try:
-            time.sleep(0.5)
-            game = start([step, "--seconds", "200"], self.environment())
+            common.started(daemon, self.path("socket"))
+            game = start([step, "--seconds", "3000"], self.environment())
             self.wait_for_frames(10, env=self.environment())
-            path = self.path("game.pursuit")
-            self.must("record", path, "--seconds", 1.5, env=self.environment())
-            result = common.run("check-stream", path, "--json")
-            self.assertEqual(result.returncode, 0, result.stdout)
-            return json.loads(result.stdout)
+            for seconds in 1.5, 15, 60:  # where others have the processors, few frames come of many seconds
+                path = self.path("game.pursuit")
+                self.must("record", path, "--seconds", seconds, env=self.environment())
+                result = common.run("check-stream", path, "--json")
+                found = json.loads(result.stdout or '{"pairs": 0}')
+                if found["pairs"] > 2:
+                    break
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            self.assertGreater(found["pairs"], 2)
+            return found
         finally:
             for process in filter(None, (game, daemon)):
                 process.terminate()
-                process.wait(60)
+                process.wait(2 * common.PATIENCE)
 
     def test_motion(self):
         found = self.check(STEPS[3])
-        self.assertGreater(found["pairs"], 2)
         self.assertLess(found["unexplained"], 0.6 * found["change"])
 
     def test_ui(self):
-        self.assertGreater(self.check(STEPS[4])["pairs"], 2)
+        self.check(STEPS[4])
 
 
 if __name__ == "__main__":
