@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import tempfile
+import time
 
 WAIT_MS = 60000
 
@@ -32,15 +33,21 @@ class Browser:
             env={**os.environ, "HOME": self.folder})
         os.close(to_read)
         os.close(back_write)
-        target = next(one for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "page")
-        self.session = self.call("Target.attachToTarget", targetId=target["targetId"], flatten=True)["sessionId"]
+        targets = []
+        while not targets:  # it answers before it has a page
+            targets = [one["targetId"] for one in self.call("Target.getTargets")["targetInfos"] if one["type"] == "page"]
+        self.session = self.call("Target.attachToTarget", targetId=targets[0], flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(domain + ".enable")
 
     def close(self):
         os.close(self.to)
         self.process.terminate()
-        self.process.wait(60)
+        try:
+            self.process.wait(WAIT_MS / 1000)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
         os.close(self.back)
         shutil.rmtree(self.folder, ignore_errors=True)
 
@@ -98,8 +105,18 @@ class Browser:
         }})""")
 
     def open(self, path):
+        """Until all of a page is there; the one before it, perhaps of the same name, still answers for a moment."""
+        self.evaluate("window.isLeft = true")
         self.call("Page.navigate", url="file://" + path)
-        self.wait_for(f"document.readyState === 'complete' && location.href === {json.dumps('file://' + path)}")
+        end = time.monotonic() + WAIT_MS / 1000
+        while True:
+            try:
+                self.wait_for(f"!window.isLeft && document.readyState === 'complete' && "
+                              f"location.href === {json.dumps('file://' + path)}")
+                return
+            except RuntimeError:  # it went while it was asked
+                if time.monotonic() > end:
+                    raise
 
     def press(self, key, code=0, shift=False, text=""):
         """A key of the keyboard, by the name that pages know it by."""
@@ -115,6 +132,7 @@ class Browser:
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.call("Emulation.setEmulatedMedia",
                   features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.wait_for(f"innerWidth === {width} && innerHeight === {height}")
 
     def screenshot(self, path, whole=False):
         data = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]
