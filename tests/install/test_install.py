@@ -7,10 +7,11 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 
 BUILD, SOURCE, MESON, CC, VERSION = (os.environ[name] for name in ("BUILD", "SOURCE", "MESON", "CC", "VERSION"))
+sys.path.insert(0, os.path.join(SOURCE, "tests/cli"))
+import common
 SANITIZED = os.environ["SANITIZE"] != "none"
 # What meson remembers of the last `meson install`, for `ninja uninstall`.
 LOG = os.path.join(BUILD, "meson-logs/install-log.txt")
@@ -47,7 +48,9 @@ def slug(heading):
 
 
 def run(*arguments, **options):
-    return subprocess.run(arguments, capture_output=True, text=True, timeout=240, **options)
+    with subprocess.Popen(arguments, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process:
+        output, errors = common.finish(process)
+    return subprocess.CompletedProcess(arguments, process.returncode, output, errors)
 
 
 class Install(unittest.TestCase):
@@ -172,15 +175,11 @@ class Install(unittest.TestCase):
         daemon = subprocess.Popen([self.find("/bin/pursuitd"), "--present", "headless"], env=environment,
                                   stderr=subprocess.DEVNULL)
         try:
-            for _ in range(300):
-                if run(self.find("/bin/pursuit"), "status", env=environment).returncode == 0:
-                    break
-                time.sleep(0.1)
-            else:
-                self.fail("the daemon does not answer")
+            answers = common.soon(lambda: run(self.find("/bin/pursuit"), "status", env=environment).returncode == 0)
         finally:
             daemon.send_signal(signal.SIGTERM)
-        self.assertEqual(daemon.wait(60), 0)
+        self.assertTrue(answers, "the daemon does not answer")
+        self.assertEqual(daemon.wait(2 * common.PATIENCE), 0)
 
 
 if __name__ == "__main__":

@@ -15,6 +15,8 @@ import tempfile
 import time
 
 WHAT, PURSUITD, SYSTEM_SERVICE, USER_SERVICE, TOP = sys.argv[1:6]
+WATCHDOG = 8  # seconds, for which other programs hardly ever keep one from running
+PATIENCE = 60
 MOST_EXPOSURE = 15  # tenths, as systemd-analyze counts: 0 to 100
 SKIP = 77
 failures = []
@@ -69,7 +71,7 @@ def static():
             unit_folder(units, service, listen)
             mode = ["--user"] if name == "user" else []
             verify = subprocess.run(["systemd-analyze", *mode, "--man=no", "verify", os.path.join(units, "pursuit.service")],
-                                    capture_output=True, text=True, timeout=60,
+                                    capture_output=True, text=True, timeout=PATIENCE,
                                     env={**os.environ, "XDG_RUNTIME_DIR": folder})
             ours = [line for line in verify.stderr.splitlines() if "pursuit" in line]
             if "Failed to" in verify.stderr and not ours:
@@ -107,7 +109,7 @@ def start_manager(folder):
 def greet(path):
     """Says HELLO; True if WELCOME came. The manager starts the daemon for it."""
     with socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET) as client:
-        client.settimeout(30)
+        client.settimeout(PATIENCE)
         client.connect(path)
         hello = struct.pack("<IIII", 1, 96, 1, 0) + struct.pack("<IIII", 0x54495550, 1, 1, 0) + b"units".ljust(64, b"\0")
         client.send(hello)
@@ -144,7 +146,7 @@ def manager():
     folder = tempfile.mkdtemp(prefix="pursuit-units-")
     path = os.path.join(folder, "socket")
     unit_folder(os.path.join(folder, "units"), USER_SERVICE, "user/pursuit.socket",
-                [(r"^WatchdogSec=.*$", "WatchdogSec=3s"), (r"^After=.*$", "After=pursuit.socket\nDefaultDependencies=no"),
+                [(r"^WatchdogSec=.*$", f"WatchdogSec={WATCHDOG}s"), (r"^After=.*$", "After=pursuit.socket\nDefaultDependencies=no"),
                  (r"^StartLimitBurst=.*$", "StartLimitBurst=50")])
     listen = os.path.join(folder, "units", "pursuit.socket")
     text = read(listen).replace("%t/pursuit/socket", path).replace("[Unit]", "[Unit]\nDefaultDependencies=no")
@@ -152,7 +154,7 @@ def manager():
         out.write(text)
     process = start_manager(folder)
     try:
-        if not wait_for(lambda: os.path.exists(path) or process.poll() is not None, 20) or process.poll() is not None:
+        if not wait_for(lambda: os.path.exists(path) or process.poll() is not None, PATIENCE) or process.poll() is not None:
             skip("no manager of our own can be started here (namespaces, control groups): "
                  + read(os.path.join(folder, "manager.log"))[-200:].strip())
         check(daemon_pid(folder) is None, "nothing runs before the first client")
@@ -161,10 +163,10 @@ def manager():
             skip("no GL context can be made on this machine")
         check(welcomed, "the first client starts the daemon and is welcome")
         first = daemon_pid(folder)
-        time.sleep(4)
+        time.sleep(1.5 * WATCHDOG)
         check(daemon_pid(folder) == first, "an idle daemon outlives its watchdog's interval")
         os.kill(first, signal.SIGSTOP)
-        second = wait_for(lambda: daemon_pid(folder) not in (None, first) and daemon_pid(folder), 30)
+        second = wait_for(lambda: daemon_pid(folder) not in (None, first) and daemon_pid(folder), PATIENCE)
         check(second is not None, "a stuck daemon is started anew")
         check(greet(path), "and welcomes clients at the same place")
         third = daemon_pid(folder)
