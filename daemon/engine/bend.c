@@ -173,23 +173,41 @@ static bool reserve(struct bend *bend, uint32_t vertices)
 	return bend->capacity > 0;
 }
 
+struct search {
+	struct bend *bend;
+	const struct plan *plan;
+	struct timing timing;
+	bool comparable;
+};
+
+static void find_in_row(void *context, uint32_t row, uint32_t thread)
+{
+	const struct search *search = context;
+	struct bend *bend = search->bend;
+	uint32_t bent = 0;
+	for (uint32_t i = row * search->plan->columns; i < (row + 1) * search->plan->columns; i++) {
+		const struct plan_vertex *vertex = &search->plan->vertices[i];
+		bend->straight[i] = (struct bend_vector){vertex->ux, vertex->uy};
+		bend->change[i] = (struct bend_vector){0.0f, 0.0f};
+		if (search->comparable && (vertex->ux != 0.0f || vertex->uy != 0.0f))
+			bend->change[i] = change_of(&bend->before, &search->timing, vertex->x, vertex->y, bend->straight[i]);
+		bent += bend->change[i].x != 0.0f || bend->change[i].y != 0.0f;
+	}
+	__atomic_fetch_add(&bend->bent, bent, __ATOMIC_RELAXED);
+}
+
 /* What is known of a frame before is still that of the frame before. */
 static void find_changes(struct bend *bend, const struct frame *frame, const struct plan *plan,
 						 const struct plan_params *params)
 {
-	struct timing timing = {.span = 1.0};
+	struct search search = {.bend = bend, .plan = plan, .timing = {.span = 1.0}};
 	const char *reason = compare(&bend->before, frame, plan);
 	if (!reason && plan->rest == PLAN_MOVES)
-		reason = measure(&bend->before, frame, plan, params, &timing);
-	bend->span = (float)timing.span;
-	for (uint32_t i = 0; i < plan->columns * plan->rows; i++) {
-		const struct plan_vertex *vertex = &plan->vertices[i];
-		bend->straight[i] = (struct bend_vector){vertex->ux, vertex->uy};
-		bend->change[i] = (struct bend_vector){0.0f, 0.0f};
-		if (!reason && (vertex->ux != 0.0f || vertex->uy != 0.0f))
-			bend->change[i] = change_of(&bend->before, &timing, vertex->x, vertex->y, bend->straight[i]);
-		bend->bent += bend->change[i].x != 0.0f || bend->change[i].y != 0.0f;
-	}
+		reason = measure(&bend->before, frame, plan, params, &search.timing);
+	search.comparable = !reason;
+	bend->span = (float)search.timing.span;
+	bend->bent = 0;
+	pool_run(params->pool, find_in_row, &search, plan->rows);
 	bend->reason = reason ? reason : bend->bent ? NULL : "no-change";
 }
 
@@ -207,7 +225,8 @@ static bool remember(struct bend *bend, const struct frame *frame, const struct 
 	before->height = plan->height;
 	if (!bend->kernels)
 		bend->kernels = plan_level_kernels(plan_level_best());
-	before->known = plan->rest != PLAN_MOVES || plan_motion_plane_take(&before->motion, frame, bend->kernels);
+	before->known =
+		plan->rest != PLAN_MOVES || plan_motion_plane_take(&before->motion, frame, bend->kernels, params->pool);
 	return before->known;
 }
 

@@ -338,7 +338,7 @@ static void test_motion_of_large_pictures(void)
 	picture_init(&picture, 1024, 576, PURSUIT_FORMAT_BGRA8, PICTURE_MOTION);
 	for (uint32_t i = 0; i < 6; i++)
 		picture_set_motion(&picture, i, 3, values[i][0], 2.0f);
-	CHECK(plan_motion_plane_take(&plane, &picture.frame, plan_level_kernels(plan_level_best())));
+	CHECK(plan_motion_plane_take(&plane, &picture.frame, plan_level_kernels(plan_level_best()), NULL));
 	CHECK(plan_motion_plane_bytes(&plane) <= UINT64_C(4) * 1024 * 576 + 8192);
 	for (uint32_t i = 0; i < 6; i++) {
 		float ux, uy;
@@ -347,6 +347,58 @@ static void test_motion_of_large_pictures(void)
 	}
 	picture_finish(&picture);
 	plan_motion_plane_finish(&plane);
+}
+
+/* ---- threads ---- */
+
+/* Things that turn and lie beside each other, in a plane that is copied before it is looked at. */
+static void turn(struct picture *picture, uint32_t seed, float by)
+{
+	picture_fill_random(picture, PURSUIT_ROLE_COLOR, seed);
+	for (uint32_t y = 0; y < picture->height; y++)
+		for (uint32_t x = 0; x < picture->width; x++) {
+			const float thing = (float)((x / 37 + y / 23) % 3);
+			picture_set_motion(picture, x, y, thing + by * (float)y / 100.0f, by * (float)x / 100.0f);
+		}
+	picture->frame.volatile_memory = true;
+}
+
+/* The third of three frames, by one thread and by some. */
+static void check_threads(struct picture *picture, uint32_t threads)
+{
+	const struct engine_params params = {.context = ENGINE_CONTEXT_CPU,
+										 .motion_model = ENGINE_MOTION_QUADRATIC,
+										 .threads = threads,
+										 .display_width_mm = 27.0f};
+	struct error error;
+	struct engine *one = make_engine(ENGINE_MOTION_QUADRATIC), *some = engine_create(&params, &error);
+	for (uint32_t i = 0; i < 3; i++) {
+		turn(picture, 1 + i, 2.0f + 0.3f * (float)i);
+		begin(one, picture, 1 + i);
+		begin(some, picture, 1 + i);
+	}
+	const size_t count = one->plan.columns * one->plan.rows;
+	const struct plan_motion_plane *a = &one->bend.before.motion, *b = &some->bend.before.motion;
+	CHECK(one->bend.bent > count / 4);
+	CHECK_INT(some->bend.bent, one->bend.bent);
+	CHECK(memcmp(some->bend.straight, one->bend.straight, count * sizeof(*one->bend.straight)) == 0);
+	CHECK(memcmp(some->bend.change, one->bend.change, count * sizeof(*one->bend.change)) == 0);
+	CHECK(a->width == picture->width && a->height == picture->height && a->half == b->half);
+	CHECK(memcmp(a->pixels, b->pixels, (a->half ? 4 : 8) * (size_t)a->width * a->height) == 0);
+	engine_destroy(&one);
+	engine_destroy(&some);
+}
+
+static void test_threads(void)
+{
+	static const uint32_t sizes[][2] = {{WIDTH, HEIGHT}, {301, 170}, {1024, 576}};
+	for (size_t i = 0; i < sizeof(sizes) / sizeof(sizes[0]); i++)
+		for (uint32_t threads = 2; threads <= 8; threads += 3) {
+			struct picture picture;
+			picture_init(&picture, sizes[i][0], sizes[i][1], PURSUIT_FORMAT_BGRA8, PICTURE_MOTION);
+			check_threads(&picture, threads);
+			picture_finish(&picture);
+		}
 }
 
 int main(void)
@@ -358,5 +410,6 @@ int main(void)
 	RUN(test_lost_frames);
 	RUN(test_anything);
 	RUN(test_motion_of_large_pictures);
+	RUN(test_threads);
 	return test_result();
 }

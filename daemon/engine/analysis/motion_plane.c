@@ -9,6 +9,9 @@
 #include "daemon/engine/analysis/rows.h"
 #include "daemon/engine/analysis/values.h"
 
+/* So that threads share them out evenly and ask seldom. */
+#define ROWS_OF_ITEM 32u
+
 static bool reserve(struct plan_motion_plane *plane, size_t bytes, size_t scratch_bytes)
 {
 	if (bytes > plane->capacity) {
@@ -24,32 +27,59 @@ static bool reserve(struct plan_motion_plane *plane, size_t bytes, size_t scratc
 	return plane->pixels && (plane->scratch || !scratch_bytes);
 }
 
-bool plan_motion_plane_take(struct plan_motion_plane *plane, const struct frame *frame,
-							const struct plan_kernels *kernels)
+/* Each thread has a look of its own at the rows. */
+struct taking {
+	struct plan_motion_plane *plane;
+	const struct plan_kernels *kernels;
+	struct plan_rows rows[POOL_MAX_THREADS];
+};
+
+static size_t init_rows(struct taking *taking, const struct frame *frame, uint32_t threads, void *scratch)
 {
-	struct plan_arena arena = {NULL, 0};
-	struct plan_rows rows;
-	plan_rows_init(&rows, frame, PURSUIT_ROLE_MOTION, &arena);
-	const uint32_t width = rows.colour_width, height = rows.colour_height;
-	const bool given_half = rows.pixel_bytes == 4;
-	const bool half = given_half || (uint64_t)width * height > PLAN_MOTION_FLOATS;
-	const size_t row_bytes = (half ? 4 : 8) * (size_t)width;
-	plane->width = plane->height = 0;
-	if (!reserve(plane, row_bytes * height, arena.used))
-		return false;
-	arena = (struct plan_arena){plane->scratch, 0};
-	plan_rows_init(&rows, frame, PURSUIT_ROLE_MOTION, &arena);
-	for (uint32_t y = 0; y < height; y++) {
-		const void *row = plan_rows_get(&rows, y);
-		void *to = plane->pixels + row_bytes * y;
-		if (half == given_half)
-			memcpy(to, row, row_bytes);
+	struct plan_arena arena = {scratch, 0};
+	for (uint32_t i = 0; i < threads; i++)
+		plan_rows_init(&taking->rows[i], frame, PURSUIT_ROLE_MOTION, &arena);
+	return arena.used;
+}
+
+static size_t row_bytes_of(const struct plan_motion_plane *plane)
+{
+	return (plane->half ? 4 : 8) * (size_t)plane->width;
+}
+
+static void take_rows(void *context, uint32_t item, uint32_t thread)
+{
+	struct taking *taking = context;
+	const struct plan_motion_plane *plane = taking->plane;
+	struct plan_rows *rows = &taking->rows[thread];
+	const size_t bytes = row_bytes_of(plane);
+	const bool same = plane->half == (rows->pixel_bytes == 4);
+	for (uint32_t y = item * ROWS_OF_ITEM; y < (item + 1) * ROWS_OF_ITEM && y < plane->height; y++) {
+		const void *row = plan_rows_get(rows, y);
+		void *to = plane->pixels + bytes * y;
+		if (same)
+			memcpy(to, row, bytes);
 		else
-			kernels->encode_half(row, 2 * (size_t)width, to);
+			taking->kernels->encode_half(row, 2 * (size_t)plane->width, to);
 	}
-	plane->half = half;
-	plane->width = width;
-	plane->height = height;
+}
+
+bool plan_motion_plane_take(struct plan_motion_plane *plane, const struct frame *frame,
+							const struct plan_kernels *kernels, struct pool *pool)
+{
+	struct taking taking = {.plane = plane, .kernels = kernels};
+	const uint32_t threads = pool_threads(pool);
+	const size_t scratch_bytes = init_rows(&taking, frame, threads, NULL);
+	const struct plan_rows *rows = &taking.rows[0];
+	plane->width = rows->colour_width;
+	plane->height = rows->colour_height;
+	plane->half = rows->pixel_bytes == 4 || (uint64_t)plane->width * plane->height > PLAN_MOTION_FLOATS;
+	if (!reserve(plane, row_bytes_of(plane) * plane->height, scratch_bytes)) {
+		plane->width = plane->height = 0;
+		return false;
+	}
+	init_rows(&taking, frame, threads, plane->scratch);
+	pool_run(pool, take_rows, &taking, (plane->height + ROWS_OF_ITEM - 1) / ROWS_OF_ITEM);
 	return true;
 }
 

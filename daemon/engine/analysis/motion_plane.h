@@ -12,6 +12,7 @@
 #include <stddef.h>
 
 #include "daemon/engine/analysis/levels.h"
+#include "daemon/engine/pool.h"
 
 #define PLAN_MOTION_FLOATS (UINT32_C(1) << 19)
 
@@ -27,7 +28,7 @@ struct plan_motion_plane {
 
 /* Takes that of a frame that has motion. False if memory is out: then it holds nothing. Any thread, one at a time. */
 bool plan_motion_plane_take(struct plan_motion_plane *plane, const struct frame *frame,
-							const struct plan_kernels *kernels);
+							const struct plan_kernels *kernels, struct pool *pool);
 
 /* Its displacement u (docs/method.md, 1) at a pixel: the bits that the plan has for it, but for the rounding above. */
 void plan_motion_plane_get(const struct plan_motion_plane *plane, uint32_t i, uint32_t j,
