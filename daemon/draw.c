@@ -134,8 +134,10 @@ int draw_queue(struct render *render, struct presenter_image *image, uint64_t vb
 	showing_add_picture(&render->showing, &picture);
 	lab_mark_picture(render->lab, image, serial, vblank, (enum points_show)show);
 	const int result = render->presenter->impl->present(render->presenter, image, vblank, render->group, serial);
-	if (result == 0)
+	if (result == 0) {
 		render->serial = render->awaited = serial;
+		render->awaited_vblank = vblank;
+	}
 	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
 	if (result == 0 && show == STATS_REAL && frame)
 		frame->queued = true;

@@ -253,6 +253,17 @@ static void tell_lab(struct render *render, const struct presenter_flip *flip)
 	lab_tell(render->lab, &points);
 }
 
+/* A presenter that skipped its vblank has dropped it: if it was to stay it is drawn again. */
+static void note_awaited(struct render *render, const struct presenter_flip *flip)
+{
+	const bool shown = flip->serial == render->awaited;
+	const bool dropped = !shown && flip->skipped > 0 && flip->vblank >= render->awaited_vblank;
+	if (dropped && render->awaited != 0)
+		render->front_plain = render->front_black = false;
+	if (shown || dropped)
+		render->awaited = 0;
+}
+
 void render_flip(struct render *render, const struct presenter_flip *flip)
 {
 	if (!render->presenter)
@@ -262,8 +273,7 @@ void render_flip(struct render *render, const struct presenter_flip *flip)
 	/* One that came on display while all sleeps: the time since is no vblanks that were due. */
 	if (render->paused)
 		render->showing.last_target_ns = 0;
-	if (flip->serial == render->awaited)
-		render->awaited = 0;
+	note_awaited(render, flip);
 	tees_flip(&render->tees, flip, &render->grid);
 	if (lab_is_active(render->lab))
 		tell_lab(render, flip);

@@ -104,7 +104,8 @@ struct render {
 	uint32_t pause_vblanks; /* that nothing was due at, in a row */
 	uint32_t stay_tries;    /* to queue the picture that stays through the pause */
 	uint64_t awaited;       /* serial of the picture queued last, whose flip was not heard of yet; 0: none */
-	bool paused;            /* the presenter sleeps */
+	uint64_t awaited_vblank;
+	bool paused; /* the presenter sleeps */
 	struct {
 		uint32_t pictures;          /* queued, or without room for them, since the last vblank that was reported */
 		uint64_t first_ns, last_ns; /* when that was */

@@ -87,24 +87,34 @@ static enum presenter_shown show_standby(struct flips *flips)
 	return PRESENTER_KEPT;
 }
 
+/*
+ * Of the pictures that are due, the last of them queued for `vblank` or one before it. What belongs to the frame on
+ * display is shown at its vblank or not at all; a newer real frame is shown at the next possible vblank, with its first
+ * picture, whatever of it was due meanwhile. -1: none.
+ */
+static int choose(const struct flips *flips, uint32_t due, uint64_t vblank)
+{
+	const struct flips_picture *last = &flips->queue[due - 1];
+	int chosen = (int)due - 1;
+	if (flips->has_front && last->group == flips->front.group)
+		return last->vblank == vblank ? chosen : -1;
+	while (chosen > 0 && flips->queue[chosen - 1].group == last->group)
+		chosen--;
+	return chosen;
+}
+
 enum presenter_shown flips_show(struct flips *flips, uint64_t vblank)
 {
-	struct flips_picture next = {0};
-	bool found = false;
-	uint32_t passed = 0;
-
-	while (passed < flips->queued && flips->queue[passed].vblank <= vblank) {
-		if (found)
-			flips_release(flips, next.image);
-		next = flips->queue[passed++];
-		found = next.vblank == vblank;
-		if (!found)
-			flips_release(flips, next.image);
-	}
-	flips->queued -= passed;
-	memmove(&flips->queue[0], &flips->queue[passed], flips->queued * sizeof(flips->queue[0]));
-	if (!found)
-		return show_standby(flips);
-	set_front(flips, &next);
-	return PRESENTER_PICTURE;
+	uint32_t due = 0;
+	while (due < flips->queued && flips->queue[due].vblank <= vblank)
+		due++;
+	const int chosen = due > 0 ? choose(flips, due, vblank) : -1;
+	if (chosen >= 0)
+		set_front(flips, &flips->queue[chosen]);
+	for (uint32_t i = 0; i < due; i++)
+		if ((int)i != chosen)
+			flips_release(flips, flips->queue[i].image);
+	flips->queued -= due;
+	memmove(&flips->queue[0], &flips->queue[due], flips->queued * sizeof(flips->queue[0]));
+	return chosen >= 0 ? PRESENTER_PICTURE : show_standby(flips);
 }

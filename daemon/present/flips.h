@@ -47,7 +47,10 @@ bool flips_present(struct flips *flips, uint32_t image, uint64_t vblank, uint64_
 void flips_set_standby(struct flips *flips, uint32_t image, uint64_t group, uint64_t serial);
 void flips_clear_standby(struct flips *flips);
 
-/* Vblank `vblank` is here: changes the front and says what is shown. Entries for earlier vblanks are dropped. */
+/*
+ * Vblank `vblank` is here: changes the front and says what is shown. Entries for earlier vblanks, which were skipped,
+ * are dropped, but for the first one of a group that is not on display yet: a real frame is late, never lost.
+ */
 enum presenter_shown flips_show(struct flips *flips, uint64_t vblank);
 
 #endif

@@ -232,10 +232,11 @@ static bool follow_vsync(struct glfw *self)
 static void note_swap(struct glfw *self, const struct drawer_swap *swap, struct presenter_flip *flip)
 {
 	struct pictures *pictures = &self->pictures;
+	const bool skipped_its_own = flip->late;
 	flip->flip_ns = swap->time_ns;
 	flip->sequence = swap->sequence;
 	flip->time_source = swap->source;
-	flip->late = swap->time_ns >= grid_time(&pictures->grid, flip->vblank + 1);
+	flip->late |= swap->time_ns >= grid_time(&pictures->grid, flip->vblank + 1);
 	if (!self->waits_for_display)
 		return;
 	vblanks_add(&self->returns, 0, swap->time_ns);
@@ -245,7 +246,7 @@ static void note_swap(struct glfw *self, const struct drawer_swap *swap, struct 
 	const uint64_t vblank = self->first_vblank + vblanks_add(&self->vblanks, flip->sequence, flip->flip_ns);
 	adopt_vblanks(self);
 	set_lead(self, swap->drawing_ns);
-	flip->late = vblank > flip->vblank;
+	flip->late = skipped_its_own || vblank > flip->vblank;
 	if (vblank >= pictures->next_vblank) {
 		self->skipped = (uint32_t)(vblank + 1 - pictures->next_vblank);
 		pictures->next_vblank = vblank + 1;
@@ -281,7 +282,7 @@ static void keep_vblank(struct glfw *self)
 	if (flip.time_source == PRESENTER_TIME_TIMER) {
 		clock_wait_until(pictures->params.clock, flip.target_ns);
 		flip.flip_ns = clock_now(pictures->params.clock);
-		flip.late = flip.flip_ns >= flip.target_ns + (uint64_t)grid_period_ns(&pictures->grid);
+		flip.late |= flip.flip_ns >= flip.target_ns + (uint64_t)grid_period_ns(&pictures->grid);
 		if (by_vsync && !flip.late) {
 			flip.time_source = PRESENTER_TIME_EXTERNAL;
 			flip.flip_ns = flip.target_ns;

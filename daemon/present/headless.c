@@ -45,7 +45,7 @@ static void *run(void *data)
 		if (pictures->stop || !pictures->running || pictures->next_vblank != vblank)
 			continue;
 		struct presenter_flip flip = pictures_show_next(pictures, clock_now(pictures->params.clock));
-		flip.late = flip.flip_ns >= grid_time(&pictures->grid, flip.vblank + 1);
+		flip.late |= flip.flip_ns >= grid_time(&pictures->grid, flip.vblank + 1);
 		flip.time_source = by_vsync ? PRESENTER_TIME_EXTERNAL : PRESENTER_TIME_TIMER;
 		/* A display shows it at a vblank, whenever the timer fired. */
 		if (by_vsync && !flip.late)

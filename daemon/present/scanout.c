@@ -26,7 +26,7 @@ int scanout_choose(struct scanout *scanout, uint64_t vblank)
 
 	if (chosen_as != PRESENTER_KEPT) {
 		scanout->chosen_as = chosen_as;
-		scanout->chosen_vblank = vblank;
+		scanout->chosen_vblank = chosen_as == PRESENTER_PICTURE ? flips->front.vblank : vblank;
 	}
 	if (!flips->has_front || scanout->under_way.any || is_same(&scanout->shown, &flips->front))
 		return -1;

@@ -65,10 +65,33 @@ static void test_skipped_vblanks(void)
 	present(&flips, 1, 1, 1);
 	present(&flips, 2, 1, 2);
 	present(&flips, 3, 1, 3);
+	expect(&flips, 1, PRESENTER_PICTURE, 1);
 	expect(&flips, 3, PRESENTER_PICTURE, 3);
 	CHECK_INT(in_use(&flips), 1);
 	present(&flips, 5, 1, 4);
 	expect(&flips, 9, PRESENTER_KEPT, 3);
+	CHECK_INT(in_use(&flips), 1);
+}
+
+/* The first picture of a frame that was not on display yet is late, never lost; unless a newer frame is due too. */
+static void test_skipped_real_frame(void)
+{
+	struct flips flips = {0};
+	present(&flips, 1, 1, 1);
+	expect(&flips, 9, PRESENTER_PICTURE, 1); /* the first of all */
+	present(&flips, 11, 1, 2);
+	present(&flips, 12, 2, 3);
+	expect(&flips, 20, PRESENTER_PICTURE, 3);
+	present(&flips, 21, 3, 4);
+	present(&flips, 22, 3, 5);
+	present(&flips, 23, 3, 6);
+	present(&flips, 24, 3, 7);
+	expect(&flips, 23, PRESENTER_PICTURE, 4);
+	expect(&flips, 24, PRESENTER_PICTURE, 7);
+	present(&flips, 30, 4, 8);
+	present(&flips, 31, 5, 9);
+	present(&flips, 32, 5, 10);
+	expect(&flips, 40, PRESENTER_PICTURE, 9);
 	CHECK_INT(in_use(&flips), 1);
 }
 
@@ -164,6 +187,7 @@ int main(void)
 	RUN(test_in_order);
 	RUN(test_newer_picture_drops_later_ones);
 	RUN(test_skipped_vblanks);
+	RUN(test_skipped_real_frame);
 	RUN(test_standby);
 	RUN(test_many_standbys);
 	RUN(test_full_queue);

@@ -32,6 +32,7 @@ static struct {
 	unsigned full, lacks; /* so often there is no picture to draw into; there was none */
 	uint64_t drawing_ns;  /* that a picture takes */
 	bool silent;          /* flips are told later */
+	bool held_up;         /* the presenter shows nothing for the moment */
 	struct presenter_flip untold[512];
 	uint32_t untold_count;
 	unsigned closed; /* tees */
@@ -132,7 +133,7 @@ static void run(uint32_t vblanks)
 			const uint64_t next_ns = render_step(&world.render);
 			clock_wait_until(&world.clock.clock, next_ns < vblank_ns ? next_ns : vblank_ns);
 		}
-		if (world.pictures.running && world.pictures.next_vblank <= vblank) {
+		if (world.pictures.running && world.pictures.next_vblank <= vblank && !world.held_up) {
 			const struct presenter_flip flip = pictures_show_next(&world.pictures, vblank_ns);
 			tell(&flip);
 		}
@@ -354,6 +355,47 @@ static void test_a_flip_that_ends_late(void)
 	}
 }
 
+/* The presenter itself was held up, and has skipped the vblank: it shows the frame when it goes on. */
+static void test_a_frame_whose_vblank_is_skipped(void)
+{
+	for (uint32_t vblanks = 1; vblanks <= 200; vblanks += 14) {
+		world_init();
+		show_real_frame_of_client();
+		world.silent = false;
+		world.held_up = true;
+		run(vblanks);
+		CHECK_INT(client_control.feedback_count, 0);
+		world.held_up = false;
+		run(200);
+		CHECK(world.render.paused);
+		CHECK_INT(client_control.feedback_count, 1);
+		CHECK_INT(client_control.feedback[0].state, PURSUIT_FEEDBACK_SHOWN);
+		CHECK_INT(world.stats.lost_real_frames, 0);
+		CHECK_INT(world.stats.real_frames, 1);
+		CHECK(world.pictures.flips.front.serial == world.render.serial && world.render.front_plain);
+		world_finish();
+	}
+}
+
+/* What is to stay was queued for a vblank that was skipped: it is there in the end. */
+static void test_a_picture_whose_vblank_is_skipped(void)
+{
+	for (uint32_t vblanks = 1; vblanks < 80; vblanks += 3) {
+		world_init();
+		render_set_view(&world.render, VIEW_HELP);
+		run(60);
+		CHECK(world.render.paused);
+		world.held_up = true;
+		render_set_view(&world.render, 0);
+		run(vblanks);
+		world.held_up = false;
+		run(100);
+		CHECK(world.pictures.flips.front.serial == world.render.serial && world.taken >= 2);
+		CHECK(world.render.paused && !world.pictures.running);
+		world_finish();
+	}
+}
+
 /* Nothing is kept of one that is gone. */
 static void test_a_client_that_is_gone_before_its_flip(void)
 {
@@ -480,6 +522,8 @@ int main(void)
 	RUN(test_a_presenter_that_takes_nothing);
 	RUN(test_a_recording_before_a_pause);
 	RUN(test_a_flip_that_ends_late);
+	RUN(test_a_frame_whose_vblank_is_skipped);
+	RUN(test_a_picture_whose_vblank_is_skipped);
 	RUN(test_a_client_that_is_gone_before_its_flip);
 	RUN(test_a_frame_shown_as_its_plain_picture);
 	RUN(test_costs_are_kept);
