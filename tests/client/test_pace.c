@@ -155,7 +155,7 @@ static void test_waiting_is_bounded(void)
 	kill(daemon, SIGKILL);
 	waitpid(daemon, NULL, 0);
 	CHECK_INT(pursuit_wait_next(stream, UINT64_MAX), 0);
-	CHECK(monotonic() - before < 20000 * MS);
+	CHECK(monotonic() - before < 60000 * MS);
 	pursuit_close(&stream);
 	unlink(path);
 }
