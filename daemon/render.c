@@ -25,6 +25,8 @@
 #define FIRST_COST_NS UINT64_C(5000000)
 /* One presenter takes over from another at the boundary of a frame, but not later than this; looked for so often. */
 #define GO_OVER_NS UINT64_C(100000000)
+/* Nor later than this where that one has a frame to show still, as one that is held up may. */
+#define GO_OVER_AWAITED_NS UINT64_C(2000000000)
 #define GO_OVER_LOOK_NS UINT64_C(1000000)
 
 int render_start(struct render *render, struct error *error)
@@ -102,7 +104,9 @@ static bool has_new_frame(const struct render *render)
 
 static bool may_go_over(const struct render *render)
 {
-	if (!render->presenter || render->next.at_once || clock_now(render->clock) - render->next.since_ns > GO_OVER_NS)
+	const uint64_t waited_ns = clock_now(render->clock) - render->next.since_ns;
+	const uint64_t most_ns = showing_awaits(&render->showing) ? GO_OVER_AWAITED_NS : GO_OVER_NS;
+	if (!render->presenter || render->next.at_once || waited_ns > most_ns)
 		return true;
 	return !showing_has_unshown(&render->showing) && (render->paused || has_new_frame(render));
 }

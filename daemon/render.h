@@ -132,8 +132,8 @@ void render_set_presenter(struct render *render, struct presenter *presenter);
 void render_wish_presenter(struct render *render, struct presenter *presenter, bool at_once);
 /*
  * Goes over to the one wished for: at the boundary of a frame, when each real frame that was given to the one in use
- * has been shown there and the next one is there, at most a tenth of a second after the wish. The picture that stays is
- * drawn for the new one. Has it gone over now?
+ * has been shown there and the next one is there, at most a tenth of a second after the wish, or two seconds where one
+ * is to be shown still. The picture that stays is drawn for the new one. Has it gone over now?
  */
 bool render_go_over(struct render *render);
 /* What is drawn over the pictures, VIEW_... or-ed. */

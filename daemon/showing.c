@@ -72,6 +72,14 @@ void showing_settle_frames(struct showing *showing, uint64_t group)
 	showing_close_frames(showing, g);
 }
 
+bool showing_awaits(const struct showing *showing)
+{
+	for (uint32_t i = 0; i < SHOWING_FRAMES; i++)
+		if (showing->frames[i].queued && is_unshown(&showing->frames[i]))
+			return true;
+	return false;
+}
+
 bool showing_has_unshown(const struct showing *showing)
 {
 	for (uint32_t i = 0; i < SHOWING_FRAMES; i++)

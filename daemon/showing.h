@@ -83,6 +83,8 @@ void showing_flip(struct showing *showing, const struct presenter_flip *flip);
 
 /* Is there a real frame that was taken, not refused, and not shown yet? */
 bool showing_has_unshown(const struct showing *showing);
+/* One of which the presenter has the picture? */
+bool showing_awaits(const struct showing *showing);
 
 /* Reports every frame of groups before `group`: shown, or replaced if it never was. */
 void showing_close_frames(struct showing *showing, uint64_t group);
