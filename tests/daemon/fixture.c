@@ -13,7 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#define PATIENCE_MS 20000u
+#include "tests/daemon/raw-client.h"
+
 #define MAX_ARGUMENTS 32
 
 uint64_t now_ns(void)
@@ -103,17 +104,18 @@ bool fixture_wait(struct fixture *fixture)
 	return false;
 }
 
-static bool log_has(const struct fixture *fixture, const char *text)
+unsigned fixture_count_logged(const struct fixture *fixture, const char *text)
 {
+	unsigned count = 0;
 	static char content[1 << 20];
 	const int fd = open(fixture->log, O_RDONLY);
 	const ssize_t length = fd >= 0 ? read(fd, content, sizeof(content) - 1) : -1;
 	if (fd >= 0)
 		close(fd);
-	if (length < 0)
-		return false;
-	content[length] = 0;
-	return strstr(content, text) != NULL;
+	content[length < 0 ? 0 : length] = 0;
+	for (const char *at = content; (at = strstr(at, text)) != NULL; at++)
+		count++;
+	return count;
 }
 
 void fixture_start(struct fixture *fixture, const char *const *arguments)
@@ -122,7 +124,7 @@ void fixture_start(struct fixture *fixture, const char *const *arguments)
 	if (fixture_wait(fixture))
 		return;
 	const int status = fixture_join(fixture);
-	const bool no_gl = status == 1 && log_has(fixture, "ontext");
+	const bool no_gl = status == 1 && fixture_count_logged(fixture, "ontext") > 0;
 	print_log(fixture);
 	fixture_finish(fixture);
 	if (no_gl)
@@ -152,14 +154,16 @@ int fixture_stop(struct fixture *fixture, int number)
 	return fixture_join(fixture);
 }
 
+bool fixture_logged_often(const struct fixture *fixture, const char *text, unsigned times)
+{
+	for (unsigned waited = 0; waited < PATIENCE_MS && fixture_count_logged(fixture, text) < times; waited += 10)
+		sleep_ms(10);
+	return fixture_count_logged(fixture, text) >= times;
+}
+
 bool fixture_logged(const struct fixture *fixture, const char *text)
 {
-	for (unsigned waited = 0; waited < 10000; waited += 10) {
-		if (log_has(fixture, text))
-			return true;
-		sleep_ms(10);
-	}
-	return false;
+	return fixture_logged_often(fixture, text, 1);
 }
 
 int fixture_count_fds(const struct fixture *fixture)
@@ -175,13 +179,35 @@ int fixture_count_fds(const struct fixture *fixture)
 	return count;
 }
 
-int fixture_fewest_fds(const struct fixture *fixture)
+bool fixture_fds_become(const struct fixture *fixture, int count)
 {
+	for (unsigned waited = 0; waited < PATIENCE_MS && fixture_count_fds(fixture) != count; waited += 10)
+		sleep_ms(10);
+	return fixture_count_fds(fixture) == count;
+}
+
+/* Who is answered so often has seen the daemon close all that had ended before. */
+static int fewest_while_it_answers(const struct fixture *fixture, int connection)
+{
+	static struct raw_reply reply;
 	int fewest = fixture_count_fds(fixture);
 	for (int i = 0; i < 50; i++) {
+		raw_control(connection, "ping", -1, &reply);
 		const int count = fixture_count_fds(fixture);
 		fewest = count < fewest ? count : fewest;
 		sleep_ms(10);
 	}
 	return fewest;
+}
+
+int fixture_settled_fds(const struct fixture *fixture)
+{
+	const int connection = raw_greet(fixture->socket);
+	CHECK(connection >= 0);
+	const int fewest = fewest_while_it_answers(fixture, connection);
+	close(connection);
+	for (unsigned waited = 0; waited < PATIENCE_MS && fixture_count_fds(fixture) >= fewest; waited += 10)
+		sleep_ms(10);
+	sleep_ms(50);
+	return fixture_count_fds(fixture);
 }

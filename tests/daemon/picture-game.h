@@ -11,7 +11,7 @@
 #include "client/pursuit.h"
 #include "tests/daemon/xvfb.h"
 
-#define PICTURE_GAME_PATIENCE 800 /* frames: 20 s */
+#define PICTURE_GAME_PATIENCE 2400 /* frames: 60 s */
 
 struct picture_game {
 	uint32_t width, height;

@@ -5,8 +5,8 @@
 
 #include <string.h>
 
+#include "tests/daemon/fixture.h"
 #include "tests/daemon/raw-client.h"
-#include "tests/test.h"
 
 /* Valid until the next one. */
 static const char *ask(int connection, const char *request)
@@ -35,6 +35,23 @@ json_int_t question_figure(int connection, const char *request, const char *path
 	const json_int_t figure = json_is_array(value) ? (json_int_t)json_array_size(value) : json_integer_value(value);
 	json_decref(answer);
 	return figure;
+}
+
+/* A second without a vblank, and without a look that came late: what was held up then may show something still. */
+void question_wait_for_rest(int connection)
+{
+	json_int_t before = -1;
+	const uint64_t end_ns = now_ns() + PATIENCE_MS * UINT64_C(1000000);
+	uint64_t since_ns = now_ns(), looked_ns = since_ns;
+	while (now_ns() - since_ns < UINT64_C(1000000000) && now_ns() < end_ns) {
+		const json_int_t now = question_figure(connection, "timeline 0 0", "total");
+		if (now != before || now_ns() - looked_ns > UINT64_C(150000000))
+			since_ns = now_ns();
+		before = now;
+		looked_ns = now_ns();
+		sleep_ms(50);
+	}
+	CHECK(now_ns() - since_ns >= UINT64_C(1000000000));
 }
 
 bool question_setting(int connection, const char *text)

@@ -16,7 +16,6 @@
 
 #include "tests/daemon/fixture.h"
 
-#define PATIENCE_MS 10000
 #define DEPTH_OFFSET ((uint64_t)RAW_WIDTH * RAW_HEIGHT * 4)
 #define MOTION_OFFSET (DEPTH_OFFSET * 2)
 
@@ -254,7 +253,7 @@ bool raw_feedback(struct raw_stream *stream, struct pursuit_feedback *report)
 {
 	const uint64_t n = stream->feedback_read;
 	struct pursuit_feedback *entry = &stream->control->feedback[n % PURSUIT_FEEDBACK_ENTRIES];
-	for (int waited = 0; waited < PATIENCE_MS; waited += 2) {
+	for (unsigned waited = 0; waited < PATIENCE_MS; waited += 2) {
 		if (__atomic_load_n(&entry->sequence, __ATOMIC_ACQUIRE) >= 2 * n + 2) {
 			memcpy(report, entry, sizeof(*report));
 			stream->feedback_read++;

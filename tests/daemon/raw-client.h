@@ -35,9 +35,9 @@ struct raw_reply {
 int raw_connect(const char *path);
 /* 0 or -errno; fds may be NULL. */
 int raw_send(int socket, const void *bytes, size_t size, const int *fds, int fd_count);
-/* Waits up to 10 s for the next packet: true; false: hung up, or nothing came. */
+/* Waits PATIENCE_MS (fixture.h) for the next packet: true; false: hung up, or nothing came. */
 bool raw_receive(int socket, struct raw_reply *reply);
-/* Nothing more comes: the other side has hung up. Waits up to 10 s. */
+/* Nothing more comes: the other side has hung up. Waits PATIENCE_MS. */
 bool raw_is_gone(int socket);
 
 struct pursuit_message_hello raw_hello(void);
@@ -80,7 +80,7 @@ struct pursuit_frame_header *raw_fill(struct raw_stream *stream);
 float *raw_depth(struct raw_stream *stream);
 float *raw_motion(struct raw_stream *stream);
 void raw_publish(struct raw_stream *stream);
-/* The next report; waits up to 10 s. False: none came. */
+/* The next report; waits PATIENCE_MS. False: none came. */
 bool raw_feedback(struct raw_stream *stream, struct pursuit_feedback *report);
 
 #endif

@@ -17,6 +17,7 @@
 
 #include "daemon/options.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 #define QUICK 100
@@ -191,7 +192,7 @@ static unsigned count_logged(const char *text)
 
 static void wait_for_count(const char *text, unsigned count)
 {
-	for (int i = 0; i < 2000 && count_logged(text) < count; i++)
+	for (unsigned waited = 0; waited < PATIENCE_MS && count_logged(text) < count; waited += 10)
 		sleep_ms(10);
 	CHECK_INT(count_logged(text), count);
 }
@@ -308,7 +309,8 @@ static void test_latency_logs(void)
 		struct stat status = {.st_size = 0};
 		char path[256];
 		snprintf(path, sizeof(path), "%s.%d.%s", path_of("latency"), i, i % 2 ? "bin" : "csv");
-		for (int j = 0; j < 1000 && (stat(path, &status) < 0 || status.st_size == 0); j++)
+		for (unsigned waited = 0; waited < PATIENCE_MS && (stat(path, &status) < 0 || status.st_size == 0);
+			 waited += 10)
 			sleep_ms(10);
 		CHECK(status.st_size > 0);
 	}
@@ -502,9 +504,9 @@ static void test_kept_picture(const char *change, const char *name)
 	char request[256];
 	snprintf(request, sizeof(request), "tee=%s %s", path_of(name), change);
 	must_set(request);
-	sleep_ms(300);
+	question_wait_for_rest(fd);
 	must_set("tee=");
-	for (int i = 0; i < 1000 && !has_picture(path_of(name)); i++)
+	for (unsigned waited = 0; waited < PATIENCE_MS && !has_picture(path_of(name)); waited += 10)
 		sleep_ms(10);
 	CHECK(has_picture(path_of(name)));
 }

@@ -15,7 +15,7 @@
 
 #define WIDTH 64u
 #define HEIGHT 48u
-#define PATIENCE 400 /* turns of 25 ms */
+#define PATIENCE 2400 /* turns of 25 ms */
 
 static struct fixture fixture;
 

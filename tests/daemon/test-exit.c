@@ -22,16 +22,16 @@ static struct fixture fixture;
 static struct raw_reply reply;
 static int control;
 
-/* Waits until nothing more is shown: the picture stays. */
 static void wait_for_rest(void)
 {
-	json_int_t before = -1, now = question_figure(control, "timeline 0 0", "total");
-	for (int i = 0; i < 30 && now != before; i++) {
-		before = now;
-		sleep_ms(400);
-		now = question_figure(control, "timeline 0 0", "total");
-	}
-	CHECK_INT(now, before);
+	question_wait_for_rest(control);
+}
+
+static void wait_for_streams(json_int_t most)
+{
+	for (unsigned waited = 0; waited < PATIENCE_MS && question_figure(control, "status", "streams") > most; waited += 5)
+		sleep_ms(5);
+	CHECK(question_figure(control, "status", "streams") <= most);
 }
 
 /* The mean brightness of the last picture of the video. */
@@ -102,9 +102,7 @@ static void show_and_die(int grey)
 	int status = 0;
 	waitpid(pid, &status, 0);
 	CHECK(WIFSIGNALED(status));
-	for (int i = 0; i < 2000 && question_figure(control, "status", "streams") > streams; i++)
-		sleep_ms(5);
-	CHECK_INT(question_figure(control, "status", "streams"), streams);
+	wait_for_streams(streams);
 	wait_for_rest();
 }
 
@@ -166,8 +164,7 @@ static void test_pause_is_no_exit(void)
 	open_one(&stream);
 	play(&stream, 150);
 	close_one(&stream);
-	for (int i = 0; i < 2000 && question_figure(control, "status", "streams") > 0; i++)
-		sleep_ms(5);
+	wait_for_streams(0);
 	wait_for_rest();
 	grey = stop(path);
 	CHECK(grey >= 0 && grey <= 16);
@@ -187,7 +184,6 @@ static void test_changes(void)
 	start("black", path, sizeof(path));
 	show_and_die(150);
 	CHECK_INT(raw_control(control, "set on-client-exit=keep", -1, &reply), 0);
-	sleep_ms(100);
 	wait_for_rest();
 	grey = stop(path);
 	CHECK(grey > 100);

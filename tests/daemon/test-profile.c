@@ -144,7 +144,7 @@ static bool profile_is(const char *name)
 /* Waits: a client that has ended is noticed a moment later. */
 static bool setting_comes(const char *line)
 {
-	for (int i = 0; i < 500; i++) {
+	for (unsigned waited = 0; waited < PATIENCE_MS; waited += 20) {
 		if (question_setting(fd, line))
 			return true;
 		sleep_ms(20);

@@ -54,7 +54,7 @@ static void *be_served(void *data)
 static void check_neighbour(void)
 {
 	const uint64_t before = __atomic_load_n(&neighbour.reports, __ATOMIC_ACQUIRE);
-	for (int waited = 0; waited < 10000; waited += 5) {
+	for (unsigned waited = 0; waited < PATIENCE_MS; waited += 5) {
 		if (neighbour.failed || __atomic_load_n(&neighbour.reports, __ATOMIC_ACQUIRE) > before + 2)
 			break;
 		sleep_ms(5);
@@ -453,12 +453,10 @@ static void test_nothing_leaked(void)
 {
 	static int at_start;
 	if (at_start == 0) {
-		at_start = fixture_fewest_fds(&fixture);
+		at_start = fixture_settled_fds(&fixture);
 		return;
 	}
-	for (int waited = 0; waited < 10000 && fixture_count_fds(&fixture) != at_start; waited += 10)
-		sleep_ms(10);
-	CHECK_INT(fixture_count_fds(&fixture), at_start);
+	CHECK(fixture_fds_become(&fixture, at_start));
 }
 
 static void test_garbage_packets(void)

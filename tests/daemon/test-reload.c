@@ -241,7 +241,7 @@ static bool cell_becomes(int cell)
 {
 	char line[32];
 	snprintf(line, sizeof(line), "\ncell = %d\n", cell);
-	for (int i = 0; i < 500 && !question_setting(fd, line); i++)
+	for (unsigned waited = 0; waited < PATIENCE_MS && !question_setting(fd, line); waited += 20)
 		sleep_ms(20);
 	return question_setting(fd, line);
 }

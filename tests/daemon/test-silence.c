@@ -18,7 +18,7 @@
 
 #define WIDTH 64u
 #define HEIGHT 48u
-#define PATIENCE_FRAMES 800 /* 20 s */
+#define PATIENCE_FRAMES 2400 /* 60 s */
 /* No call of a game lasts longer, however busy the machine is; one that waited for the server would last for ever. */
 #define BOUND_NS UINT64_C(3000000000)
 /* The daemon's end: its threads are waited for 3.5 s. */

@@ -13,11 +13,12 @@
 
 #include "client/pursuit.h"
 #include "tests/daemon/fixture.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 
 #define WIDTH 64u
 #define HEIGHT 48u
-#define PATIENCE 400 /* turns of 25 ms */
+#define PATIENCE 2400 /* turns of 25 ms */
 #define STEP 10
 #define LEVELS 20u
 #define SPACING 3 /* so that they can be told apart after rounding */
@@ -82,27 +83,30 @@ static void submit(struct player *player)
 	pursuit_submit(player->stream, frame);
 }
 
-static uint64_t count_shown(struct pursuit_stream *stream)
+static uint64_t count_shown(struct pursuit_stream *stream, uint64_t *in_betweens)
 {
 	struct pursuit_feedback_report report;
 	uint64_t shown = 0;
-	while (pursuit_poll_feedback(stream, &report))
+	while (pursuit_poll_feedback(stream, &report)) {
 		shown += report.shown == PURSUIT_SHOWN;
+		*in_betweens += report.in_betweens;
+	}
 	return shown;
 }
 
-/* All that are open play until this one was shown so often. */
+/* All that are open play until this one was shown so often, with in-betweens. */
 static bool play_until_shown(struct player *player, uint64_t frames)
 {
-	uint64_t shown = 0;
-	count_shown(player->stream);
-	for (int i = 0; i < PATIENCE && shown < frames; i++) {
+	uint64_t shown = 0, in_betweens = 0;
+	count_shown(player->stream, &in_betweens);
+	in_betweens = 0;
+	for (int i = 0; i < PATIENCE && (shown < frames || in_betweens < frames / 2); i++) {
 		for (int p = 0; p < 2; p++)
 			submit(&players[p]);
 		sleep_ms(25);
-		shown += count_shown(player->stream);
+		shown += count_shown(player->stream, &in_betweens);
 	}
-	return shown >= frames;
+	return shown >= frames && in_betweens >= frames / 2;
 }
 
 /* ---- the daemon ---- */
@@ -134,15 +138,11 @@ static uint64_t count_vblanks(void)
 }
 
 /* Nothing is shown any more: all pause. */
-static bool wait_until_still(void)
+static void wait_until_still(void)
 {
-	for (int i = 0; i < PATIENCE; i++) {
-		const uint64_t before = count_vblanks();
-		sleep_ms(300);
-		if (count_vblanks() == before)
-			return true;
-	}
-	return false;
+	const int fd = raw_greet(fixture.socket);
+	question_wait_for_rest(fd);
+	close(fd);
 }
 
 static bool focus_shows_something(const char *request)
@@ -152,7 +152,8 @@ static bool focus_shows_something(const char *request)
 	CHECK_INT(ask(request, &reply), 0);
 	for (int i = 0; i < PATIENCE && count_vblanks() == before; i++)
 		sleep_ms(25);
-	return count_vblanks() > before && wait_until_still();
+	wait_until_still();
+	return count_vblanks() > before;
 }
 
 /* ---- the video ---- */
@@ -230,12 +231,12 @@ static void test_switches(void)
 	CHECK(play_until_shown(&players[0], 12));
 	CHECK_INT(ask("set focus=game b", &reply), 0);
 	CHECK(play_until_shown(&players[1], 12));
-	CHECK(wait_until_still());
+	wait_until_still();
 	CHECK(focus_shows_something("set focus=game a"));
 	CHECK(focus_shows_something("set focus=game b"));
 	const int last_a = players[0].level, last_b = players[1].level;
 	pursuit_close(&players[1].stream); /* what is left is shown */
-	CHECK(wait_until_still());
+	wait_until_still();
 	pursuit_close(&players[0].stream);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 

@@ -15,6 +15,7 @@
 #define WIDTH 64u
 #define HEIGHT 48u
 #define FRAME_BYTES (WIDTH * HEIGHT * 3)
+#define LINKS 8000u /* more than there are vblanks in a minute */
 
 static struct fixture fixture;
 
@@ -37,7 +38,7 @@ static void play(uint64_t frames)
 												 .socket_path = fixture.socket};
 	struct pursuit_stream *stream = pursuit_open(&params);
 	uint64_t shown = 0;
-	for (int i = 0; i < 800 && shown < frames; i++) {
+	for (int i = 0; i < 2400 && shown < frames; i++) {
 		struct pursuit_frame *frame = pursuit_acquire(stream);
 		if (frame) {
 			for (uint32_t y = 0; y < HEIGHT; y++)
@@ -191,7 +192,7 @@ static void test_full_images(void)
 	snprintf(other, sizeof(other), "%s/full", fixture.folder);
 	snprintf(link, sizeof(link), "%s/link", fixture.folder);
 	CHECK(mkdir(folder, 0700) == 0 && mkdir(other, 0700) == 0 && symlink("images", link) == 0);
-	for (unsigned i = 0; i < 400; i++) {
+	for (unsigned i = 0; i < LINKS; i++) {
 		snprintf(path, sizeof(path), "%s/%u.png", other, i);
 		CHECK_INT(symlink("/dev/full", path), 0);
 	}
@@ -206,12 +207,12 @@ static void test_full_images(void)
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
 	CHECK(fixture_logged(&fixture, "No space left on device; nothing more is recorded"));
 	unsigned there = 0;
-	for (unsigned i = 0; i < 400; i++) {
+	for (unsigned i = 0; i < LINKS; i++) {
 		struct stat status;
 		snprintf(path, sizeof(path), "%s/%u.png", other, i);
 		there += lstat(path, &status) == 0;
 	}
-	CHECK_INT(there, 399); /* half an image is none */
+	CHECK_INT(there, LINKS - 1); /* half an image is none */
 }
 
 /* What is written fails with ENOSPC: said once, frames are shown all the same, and what is not there is counted. */
