@@ -172,16 +172,21 @@ struct output *output_create(const struct output_params *params, struct error *e
 	return NULL;
 }
 
+void output_stop(struct output *output)
+{
+	pthread_mutex_lock(&output->lock);
+	output->stop = true;
+	pthread_cond_signal(&output->wake);
+	pthread_mutex_unlock(&output->lock);
+}
+
 void output_destroy(struct output **output)
 {
 	struct output *self = *output;
 	*output = NULL;
 	if (!self)
 		return;
-	pthread_mutex_lock(&self->lock);
-	self->stop = true;
-	pthread_cond_signal(&self->wake);
-	pthread_mutex_unlock(&self->lock);
+	output_stop(self);
 	pthread_join(self->thread, NULL);
 	for (uint32_t i = 0; i < self->stream_count; i++)
 		stream_release(&self->streams[i]);

@@ -276,6 +276,8 @@ static void stop(struct pursuitd *daemon)
 	if (daemon->control)
 		control_set_server(daemon->control, NULL);
 	watchdog_destroy(&daemon->watchdog);
+	if (daemon->output)
+		output_stop(daemon->output);
 	server_destroy(&daemon->server);
 	admission_destroy(&daemon->admission);
 	control_destroy(&daemon->control);
