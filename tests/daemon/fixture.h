@@ -34,7 +34,7 @@ void fixture_finish(struct fixture *fixture);
 void fixture_spawn(struct fixture *fixture, const char *const *arguments);
 /* Waits until it answers; if it exits instead, false. */
 bool fixture_wait(struct fixture *fixture);
-/* Both; ends the test as skipped if there is no GL at all. */
+/* Both, again where a display server was too busy to answer; ends the test as skipped if there is no GL at all. */
 void fixture_start(struct fixture *fixture, const char *const *arguments);
 
 /* Signals and waits: the exit status, or 128 + signal, -1 if it had to be killed after PATIENCE_MS. */

@@ -110,14 +110,14 @@ static void end(void)
 static void wait_for_event(void)
 {
 	struct pollfd event = {output_event_fd(house.output), POLLIN, 0};
-	CHECK_INT(poll(&event, 1, 20000), 1);
+	CHECK_INT(poll(&event, 1, PATIENCE_MS), 1);
 }
 
 /* Main has been told all. */
 static void wait_until_heard(void)
 {
 	struct pollfd event = {output_event_fd(house.output), POLLIN, 0};
-	for (int i = 0; i < 20000 && poll(&event, 1, 0) == 1; i++)
+	for (int i = 0; i < (int)PATIENCE_MS && poll(&event, 1, 0) == 1; i++)
 		usleep(1000);
 	CHECK_INT(poll(&event, 1, 0), 0);
 }

@@ -49,7 +49,7 @@ static bool fills_the_right_monitor(void)
 	if (!play_until_seen(2 * WIDTH - 1, HEIGHT - 1, picture_game_pattern(WIDTH - 1, HEIGHT - 1)))
 		return false;
 	uint32_t wrong = count_wrong();
-	for (int i = 0; i < 400 && wrong > 0; i++) {
+	for (int i = 0; i < PICTURE_GAME_PATIENCE && wrong > 0; i++) {
 		picture_game_play(&game);
 		wrong = count_wrong();
 	}
@@ -59,7 +59,7 @@ static bool fills_the_right_monitor(void)
 
 static bool wait_for_rate(const char *monitor, double rate)
 {
-	for (int i = 0; i < 400; i++) {
+	for (int i = 0; i < 1200; i++) {
 		if (fabs(xorg_rate(monitor) - rate) < 0.02)
 			return true;
 		sleep_ms(50);
@@ -91,7 +91,7 @@ static int count_guards(void)
 static bool wait_for_guards(int wanted)
 {
 	int count = count_guards();
-	for (int i = 0; i < 200 && count != wanted; i++) {
+	for (int i = 0; i < 1200 && count != wanted; i++) {
 		sleep_ms(50);
 		count = count_guards();
 	}

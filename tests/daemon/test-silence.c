@@ -20,9 +20,9 @@
 #define HEIGHT 48u
 #define PATIENCE_FRAMES 2400 /* 60 s */
 /* No call of a game lasts longer, however busy the machine is; one that waited for the server would last for ever. */
-#define BOUND_NS UINT64_C(3000000000)
+#define BOUND_NS UINT64_C(30000000000)
 /* The daemon's end: its threads are waited for 3.5 s. */
-#define END_NS UINT64_C(12000000000)
+#define END_NS UINT64_C(40000000000)
 
 static struct fixture fixture;
 static struct xvfb xvfb;

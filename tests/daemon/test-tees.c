@@ -182,7 +182,7 @@ static bool comes(unsigned number)
 {
 	char path[96];
 	snprintf(path, sizeof(path), "%s/%u.png", folder, number);
-	for (unsigned i = 0; i < 2000 && access(path, F_OK) < 0; i++)
+	for (unsigned i = 0; i < 6000 && access(path, F_OK) < 0; i++)
 		nanosleep(&(struct timespec){0, 10000000}, NULL);
 	return access(path, F_OK) == 0;
 }
@@ -244,7 +244,7 @@ static size_t drain(int reader, long pause_ns)
 	static uint8_t piece[LARGE * LARGE * 3];
 	size_t bytes = 0;
 	struct pollfd written = {reader, POLLIN, 0};
-	CHECK_INT(poll(&written, 1, 20000), 1); /* before that it would be the end */
+	CHECK_INT(poll(&written, 1, 60000), 1); /* before that it would be the end */
 	fcntl(reader, F_SETFL, 0);
 	for (ssize_t got = 1; got > 0;) {
 		size_t filled = 0;

@@ -32,12 +32,12 @@ static unsigned count_shown(struct pursuit_stream *stream, uint64_t after_ns)
 	return shown;
 }
 
-/* Plays until so many frames submitted from now on were shown, 20 s at most. The time it took, ns. */
+/* Plays until so many frames submitted from now on were shown, 60 s at most. The time it took, ns. */
 static uint64_t play_until_shown(struct pursuit_stream *stream, unsigned wanted)
 {
 	const uint64_t start = now_ns();
 	unsigned shown = 0;
-	for (int i = 0; i < 1250 && shown < wanted; i++) {
+	for (int i = 0; i < 3750 && shown < wanted; i++) {
 		game_play_frame(stream);
 		shown += count_shown(stream, start);
 	}
@@ -114,7 +114,7 @@ static pid_t start_client(void)
 static bool wait_for_streams(json_int_t wanted)
 {
 	json_int_t streams = -1;
-	for (int waited = 0; waited < 20000 && streams != wanted; waited += 10) {
+	for (unsigned waited = 0; waited < PATIENCE_MS && streams != wanted; waited += 10) {
 		streams = figure("streams");
 		sleep_ms(10);
 	}
@@ -143,7 +143,7 @@ static void test_client_suspended(void)
 	const json_int_t received = figure("received_frames");
 	kill(child, SIGCONT);
 	focus(child);
-	for (int waited = 0; waited < 20000 && figure("received_frames") < received + 5; waited += 20)
+	for (unsigned waited = 0; waited < PATIENCE_MS && figure("received_frames") < received + 5; waited += 20)
 		sleep_ms(20);
 	CHECK(figure("received_frames") >= received + 5);
 	kill(child, SIGKILL);

@@ -218,7 +218,7 @@ static json_int_t count(const char *name)
 
 static void wait_for(const char *name, json_int_t wanted)
 {
-	for (int i = 0; i < 1000 && count(name) < wanted; i++)
+	for (int i = 0; i < 6000 && count(name) < wanted; i++)
 		nanosleep(&(struct timespec){0, 10000000}, NULL);
 	CHECK_INT(count(name), wanted);
 }
@@ -307,7 +307,7 @@ static void test_refusals(void)
 		refuse("trigger-line=4 photodiode-line=9", "there is no board 9");
 		refuse("latency-log=/no-such-folder/log.csv", "/no-such-folder/log.csv");
 		flip(1);
-		for (int j = 0; j < 500 && !is_taken(1); j++)
+		for (int j = 0; j < 60000 && !is_taken(1); j++)
 			nanosleep(&(struct timespec){0, 1000000}, NULL);
 		CHECK(is_taken(1));
 		CHECK(!is_taken(4));

@@ -38,7 +38,7 @@ static long count_told(struct lab *lab, json_int_t wanted)
 {
 	long told = 0;
 	json_t *object = lab_rows_json(lab, 0, 10000);
-	for (int i = 0; i < 2000 && json_integer_value(json_object_get(object, "total")) < wanted; i++) {
+	for (int i = 0; i < 6000 && json_integer_value(json_object_get(object, "total")) < wanted; i++) {
 		json_decref(object);
 		nanosleep(&(struct timespec){0, 10000000}, NULL);
 		object = lab_rows_json(lab, 0, 10000);

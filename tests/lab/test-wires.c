@@ -182,7 +182,7 @@ static void flip(struct lab *lab, uint64_t vblank, uint64_t flip_ns)
 static json_t *wait_for_rows(struct lab *lab, json_int_t wanted)
 {
 	json_t *object = lab_rows_json(lab, 0, 10000);
-	for (int i = 0; i < 3000 && json_integer_value(json_object_get(object, "total")) < wanted; i++) {
+	for (int i = 0; i < 6000 && json_integer_value(json_object_get(object, "total")) < wanted; i++) {
 		json_decref(object);
 		nanosleep(&(struct timespec){0, 10000000}, NULL);
 		object = lab_rows_json(lab, 0, 10000);

@@ -68,11 +68,11 @@ static unsigned count_fds(pid_t pid)
 	return count;
 }
 
-/* The fewest in a while: what was just closed may take a moment to go. */
-static unsigned fewest_fds(pid_t pid)
+/* The fewest in a while, until there are as few as that: what was just closed may take some time to go. */
+static unsigned fewest_fds(pid_t pid, unsigned wanted)
 {
 	unsigned fewest = count_fds(pid);
-	for (int i = 0; i < 100; i++) {
+	for (int i = 0; i < 200 || (i < 6000 && fewest > wanted); i++) {
 		const unsigned count = count_fds(pid);
 		fewest = count < fewest ? count : fewest;
 		usleep(10000);
@@ -97,7 +97,7 @@ static pid_t start_daemon(void)
 	const pid_t pid = fork();
 	if (pid == 0)
 		exit(soak_daemon(soak));
-	for (int waited = 0; waited < 20000 && !answers(); waited += 10) {
+	for (int waited = 0; waited < 60000 && !answers(); waited += 10) {
 		if (waitpid(pid, NULL, WNOHANG) == pid)
 			SKIP("no GL context can be made on this machine");
 		usleep(10000);
@@ -153,9 +153,9 @@ struct taken {
 	unsigned fds;
 };
 
-static struct taken taken_by(pid_t daemon)
+static struct taken taken_by(pid_t daemon, unsigned wanted_fds)
 {
-	const unsigned fds = fewest_fds(daemon);
+	const unsigned fds = fewest_fds(daemon, wanted_fds);
 	return (struct taken){status_kb(daemon, "RssAnon"), status_kb(daemon, "VmRSS"), fds};
 }
 
@@ -176,7 +176,7 @@ static void say(const struct taken *before, const struct taken *after, unsigned 
 static void run(unsigned seconds, uint64_t seed)
 {
 	const pid_t daemon = start_daemon();
-	const struct taken before = taken_by(daemon);
+	const struct taken before = taken_by(daemon, UINT32_MAX);
 	const uint64_t start = now_ns(), end = start + seconds * UINT64_C(1000000000);
 	pid_t clients[CLIENTS] = {0};
 	unsigned long early_kb = 0;
@@ -188,7 +188,7 @@ static void run(unsigned seconds, uint64_t seed)
 		usleep(20000);
 	}
 	end_clients(clients);
-	const struct taken after = taken_by(daemon);
+	const struct taken after = taken_by(daemon, before.fds);
 	int status = -1;
 	kill(daemon, SIGTERM);
 	waitpid(daemon, &status, 0);
