@@ -69,7 +69,7 @@ bool xvfb_start_server(struct xvfb *xvfb, const char *const *arguments)
 		snprintf(xvfb->name, sizeof(xvfb->name), ":%u", 100 + (unsigned)getpid() % 50000);
 	bool started = start_once(xvfb, arguments);
 	/* What the one before has left may be in the way for a moment. */
-	for (int i = 0; again && i < 20 && !started; i++) {
+	for (int i = 0; again && i < 240 && !started; i++) {
 		sleep_ms(250);
 		started = start_once(xvfb, arguments);
 	}
