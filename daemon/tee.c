@@ -261,15 +261,21 @@ void tee_times_path(const char *path, char times[TEE_TIMES_BYTES])
 static int open_times(struct tee *tee, struct error *error)
 {
 	char times[TEE_TIMES_BYTES];
+	struct stat file;
 	tee_times_path(tee->path, times);
 	const int fd = open_at_once("tee", times, O_TRUNC, error);
 	if (fd < 0)
 		return fd;
 	tee->times = fdopen(fd, "w");
-	if (tee->times)
-		return 0;
-	close(fd);
-	return error_set(error, -ENOMEM, "tee: out of memory");
+	if (!tee->times) {
+		close(fd);
+		return error_set(error, -ENOMEM, "tee: out of memory");
+	}
+	fprintf(tee->times, "vblank,sequence,target_ns,flip_ns,time_source,picture,shown,number\n");
+	/* So that who is to write there next puts it aside, where rows may still come; an empty file nobody would. */
+	if (fstat(fd, &file) == 0 && S_ISREG(file.st_mode))
+		fflush(tee->times);
+	return 0;
 }
 
 struct tee *tee_create(const struct tee_params *params, struct error *error)
@@ -286,7 +292,6 @@ struct tee *tee_create(const struct tee_params *params, struct error *error)
 		free(tee);
 		return NULL;
 	}
-	fprintf(tee->times, "vblank,sequence,target_ns,flip_ns,time_source,picture,shown,number\n");
 	pthread_mutex_init(&tee->lock, NULL);
 	pthread_cond_init(&tee->wake, NULL);
 	const int result = worker_create(&tee->worker, run, tee);
