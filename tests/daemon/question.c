@@ -3,6 +3,7 @@
 
 #include "tests/daemon/question.h"
 
+#include <errno.h>
 #include <string.h>
 
 #include "tests/daemon/fixture.h"
@@ -35,6 +36,17 @@ json_int_t question_figure(int connection, const char *request, const char *path
 	const json_int_t figure = json_is_array(value) ? (json_int_t)json_array_size(value) : json_integer_value(value);
 	json_decref(answer);
 	return figure;
+}
+
+int question_set_at_last(int connection, const char *request)
+{
+	static _Thread_local struct raw_reply reply;
+	int result = raw_control(connection, request, -1, &reply);
+	for (unsigned waited = 0; waited < PATIENCE_MS && result == ENODEV; waited += 100) {
+		sleep_ms(100);
+		result = raw_control(connection, request, -1, &reply);
+	}
+	return result;
 }
 
 /* A second without a vblank, and without a look that came late: what was held up then may show something still. */

@@ -12,6 +12,7 @@
 
 #include "tests/daemon/fixture.h"
 #include "tests/daemon/picture-game.h"
+#include "tests/daemon/question.h"
 #include "tests/daemon/raw-client.h"
 #include "tests/daemon/xorg.h"
 
@@ -155,11 +156,10 @@ static void test_in_and_out_by_key(void)
 
 static void must_set(const char *change)
 {
-	static struct raw_reply reply;
 	const int fd = raw_greet(fixture.socket);
 	char request[128];
 	snprintf(request, sizeof(request), "set %s", change);
-	CHECK_INT(raw_control(fd, request, -1, &reply), 0);
+	CHECK_INT(question_set_at_last(fd, request), 0);
 	close(fd);
 }
 

@@ -3,7 +3,6 @@
 
 /* The GLFW presenter under Xvfb: what the engine made is what is on the screen, keys work, nothing hangs. */
 
-#include <errno.h>
 #include <signal.h>
 #include <string.h>
 #include <unistd.h>
@@ -233,18 +232,6 @@ static void test_server_that_hangs(void)
 	stop(SIGTERM);
 }
 
-/* It is refused while the server is too busy to answer. */
-static int set_at_last(int fd, const char *request)
-{
-	static struct raw_reply reply;
-	int result = raw_control(fd, request, -1, &reply);
-	for (unsigned waited = 0; waited < PATIENCE_MS && result == ENODEV; waited += 100) {
-		sleep_ms(100);
-		result = raw_control(fd, request, -1, &reply);
-	}
-	return result;
-}
-
 /* The window was made anew and goes again at once, maybe before the render thread has seen it. */
 static void test_changes_that_are_taken_back(void)
 {
@@ -258,7 +245,7 @@ static void test_changes_that_are_taken_back(void)
 		snprintf(request, sizeof(request), "set window-size=320x%d seccomp=no", 200 + i);
 		CHECK(raw_control(fd, request, -1, &reply) != 0);
 		snprintf(request, sizeof(request), "set window-size=400x%d", 200 + i);
-		CHECK_INT(set_at_last(fd, request), 0);
+		CHECK_INT(question_set_at_last(fd, request), 0);
 	}
 	close(fd);
 	CHECK_INT(fixture_stop(&fixture, SIGTERM), 0);
