@@ -4,6 +4,7 @@
 #include "tests/client/harness.h"
 
 #include <dirent.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,8 +14,14 @@
 
 struct harness harness;
 
+static void on_continue(int signal)
+{
+	harness.continued++;
+}
+
 bool harness_start(void)
 {
+	sigaction(SIGCONT, &(struct sigaction){.sa_handler = on_continue, .sa_flags = SA_RESTART}, NULL);
 	snprintf(harness.folder, sizeof(harness.folder), "/tmp/pursuit-test-XXXXXX");
 	if (!mkdtemp(harness.folder)) {
 		perror(harness.folder);
@@ -46,6 +53,7 @@ void sleep_ms(long ms)
 struct call {
 	uint64_t begin_ns;
 	long sleeps; /* of this thread, up to then */
+	sig_atomic_t continued;
 };
 
 static long count_sleeps(void)
@@ -58,13 +66,14 @@ static long count_sleeps(void)
 static struct call call_begin(void)
 {
 	const long sleeps = count_sleeps();
-	return (struct call){now(), sleeps};
+	return (struct call){now(), sleeps, harness.continued};
 }
 
 static void call_end(const struct call *call)
 {
 	uint64_t spent = now() - call->begin_ns;
-	harness.waits += spent >= AT_ONCE_NS && count_sleeps() > call->sleeps;
+	const bool slept = count_sleeps() > call->sleeps && harness.continued == call->continued;
+	harness.waits += spent >= AT_ONCE_NS && slept;
 	harness.slowest_ns = spent > harness.slowest_ns ? spent : harness.slowest_ns;
 }
 

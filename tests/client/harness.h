@@ -5,6 +5,7 @@
 #ifndef PURSUIT_TEST_HARNESS_H
 #define PURSUIT_TEST_HARNESS_H
 
+#include <signal.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -23,7 +24,8 @@ struct harness {
 	char folder[40];
 	char path[64];
 	uint64_t slowest_ns; /* of the calls since the last close */
-	unsigned waits; /* calls that took longer than AT_ONCE_NS and slept; a signal that stops us is taken for that */
+	unsigned waits;      /* calls that took longer than AT_ONCE_NS and slept, though nobody had stopped us */
+	volatile sig_atomic_t continued; /* after we were stopped */
 };
 extern struct harness harness;
 
