@@ -308,13 +308,17 @@ static void emit_row(void *context, uint32_t block_row, uint32_t thread)
 		indices += emit(work->merge, work->plan, &leaves[i], indices);
 }
 
-uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float displacement_tolerance, struct pool *pool,
-						 uint32_t *indices)
+static uint32_t block_rows(const struct plan *plan)
+{
+	return 1 + (plan->rows - 2 + LARGEST - 1) / LARGEST;
+}
+
+uint32_t merge_find(struct merge *merge, const struct plan *plan, float displacement_tolerance, struct pool *pool)
 {
 	/* Depth matters only where triangles lie over each other. */
 	const struct tolerance tolerance = {displacement_tolerance, plan->folded ? DEPTH_TOLERANCE : INFINITY};
-	const uint32_t rows = 1 + (plan->rows - 2 + LARGEST - 1) / LARGEST;
-	struct work work = {merge, plan, tolerance, plan->folded > 0, indices};
+	const uint32_t rows = block_rows(plan);
+	struct work work = {.merge = merge, .plan = plan, .tolerance = tolerance, .depths = plan->folded > 0};
 	if (!reserve(merge, plan))
 		return 0;
 	pool_run(pool, divide_row, &work, rows);
@@ -325,8 +329,13 @@ uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float dis
 		merge->rows[i].indices = count;
 		count += more;
 	}
-	pool_run(pool, emit_row, &work, rows);
 	return count;
+}
+
+void merge_write(struct merge *merge, const struct plan *plan, struct pool *pool, uint32_t *indices)
+{
+	struct work work = {.merge = merge, .plan = plan, .indices = indices};
+	pool_run(pool, emit_row, &work, block_rows(plan));
 }
 
 void merge_finish(struct merge *merge)

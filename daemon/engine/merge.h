@@ -43,12 +43,15 @@ struct merge {
 struct pool;
 
 /*
- * Writes triangles, 3 indices each, to `indices`, which has room for plan->index_count; returns how many indices.
- * `tolerance`: pixels of displacement (over one real interval) that a vertex may be off. `pool` shares the work: no bit
- * depends on it. 0 if memory is out.
+ * Finds the triangles; returns how many indices they have, 3 each, at most plan->index_count. `tolerance`: pixels of
+ * displacement (over one real interval) that a vertex may be off. `pool` shares the work: no bit depends on it. 0 if
+ * memory is out.
  */
-uint32_t merge_triangles(struct merge *merge, const struct plan *plan, float tolerance, struct pool *pool,
-						 uint32_t *indices);
+uint32_t merge_find(struct merge *merge, const struct plan *plan, float tolerance, struct pool *pool);
+
+/* Writes those that were found last, of the same plan, to `indices`, which has room for them. */
+void merge_write(struct merge *merge, const struct plan *plan, struct pool *pool, uint32_t *indices);
+
 void merge_finish(struct merge *merge);
 
 #endif

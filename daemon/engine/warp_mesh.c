@@ -14,11 +14,15 @@
 /* Triangles of a plan below which waking threads takes longer than what they would do. */
 #define LEAST_SHARED 32768u
 
-static bool reserve(struct warp_mesh *mesh, uint32_t count)
+/* Indices; `most` that there can be. */
+static bool reserve(struct warp_mesh *mesh, uint32_t count, uint32_t most)
 {
 	if (count <= mesh->capacity)
 		return true;
 	mesh->capacity = 0;
+	/* Room to grow, so that it soon does not any more. */
+	count += count / 6 * 3;
+	count = count < most ? count : most;
 	free(mesh->triangles);
 	free(mesh->lists);
 	free(mesh->wildness);
@@ -49,16 +53,16 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float toler
 {
 	mesh->plan = plan;
 	mesh->pool = plan->index_count / 3 >= LEAST_SHARED ? pool : NULL;
-	if (!reserve(mesh, plan->index_count))
-		return error_set(error, -ENOMEM, "out of memory for %u triangles", plan->index_count / 3);
-	mesh->count = plan->index_count;
 	mesh->tolerance = tolerance > 0.0f ? tolerance : 0.0f;
-	if (tolerance >= 0.0f)
-		mesh->count = merge_triangles(&mesh->merge, plan, tolerance, mesh->pool, mesh->triangles);
-	else
-		memcpy(mesh->triangles, plan->indices, plan->index_count * sizeof(*plan->indices));
+	mesh->count = tolerance < 0.0f ? plan->index_count : merge_find(&mesh->merge, plan, tolerance, mesh->pool);
 	if (!mesh->count)
 		return error_set(error, -ENOMEM, "out of memory for %u cells", plan->index_count / 6);
+	if (!reserve(mesh, mesh->count, plan->index_count))
+		return error_set(error, -ENOMEM, "out of memory for %u triangles", mesh->count / 3);
+	if (tolerance < 0.0f)
+		memcpy(mesh->triangles, plan->indices, plan->index_count * sizeof(*plan->indices));
+	else
+		merge_write(&mesh->merge, plan, mesh->pool, mesh->triangles);
 	pool_run(mesh->pool, measure, mesh, warp_items(mesh));
 	mesh->begun++;
 	return 0;

@@ -157,6 +157,9 @@ static void test_worst(void)
 {
 	struct engine_params params = {.blur = ENGINE_BLUR_EVERYWHERE};
 	check_worst("UI, blurred everywhere", &params);
+	params.cell = 4;
+	check_worst("UI, blurred everywhere, cells of 4", &params);
+	params.cell = 0;
 	params.motion_model = ENGINE_MOTION_QUADRATIC;
 	check_worst("UI, blurred everywhere, quadratic", &params);
 }
