@@ -305,9 +305,9 @@ static void test_slow_disk(void)
 {
 	pthread_t thread;
 	int reader;
-	struct tee *tee = fill_pipe(UINT64_C(2000000000), &reader);
+	struct tee *tee = fill_pipe(UINT64_C(5000000000), &reader);
 	CHECK_INT(pthread_create(&thread, NULL, destroy, tee), 0);
-	CHECK(drain(reader, 250000000) > FRAMES * LARGE * LARGE * 3);
+	CHECK(drain(reader, 500000000) > FRAMES * LARGE * LARGE * 3);
 	pthread_join(thread, NULL);
 	CHECK(!is_given_up());
 	CHECK_STRING(serials_of(0), "1 2 3 4 5 6 7 8 9 10 11 12 ");
