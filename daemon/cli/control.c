@@ -14,6 +14,7 @@
 #include "proto/wire.h"
 
 #define ANSWER_LIMIT_MS 10000
+#define RECORDING_LIMIT_MS 600000 /* what is still to be compressed and written may fill memory */
 #define MACHINE_SOCKET "/run/pursuit/socket"
 
 /* A packet as it comes. */
@@ -65,15 +66,15 @@ static int dial_usual(struct control *control, struct error *error)
 }
 
 /* Receives one packet. 0 or a negative errno with a sentence. */
-static int receive(struct control *control, union packet *packet, struct error *error)
+static int receive(struct control *control, int limit_ms, union packet *packet, struct error *error)
 {
 	struct pollfd wait = {.fd = control->fd, .events = POLLIN};
 	int ready;
 	do {
-		ready = poll(&wait, 1, ANSWER_LIMIT_MS);
+		ready = poll(&wait, 1, limit_ms);
 	} while (ready < 0 && errno == EINTR);
 	if (ready == 0)
-		return error_set(error, -ETIMEDOUT, "the daemon did not answer within %d s", ANSWER_LIMIT_MS / 1000);
+		return error_set(error, -ETIMEDOUT, "the daemon did not answer within %d s", limit_ms / 1000);
 	ssize_t length = recv(control->fd, packet, sizeof(*packet), MSG_CMSG_CLOEXEC);
 	if (length < 0)
 		return error_set(error, -errno, "the connection to the daemon broke: %s", strerror(errno));
@@ -105,7 +106,7 @@ static int greet(struct control *control, struct error *error)
 	};
 	if (send(control->fd, &hello, sizeof(hello), MSG_NOSIGNAL) < 0)
 		return error_set(error, -errno, "the connection to the daemon broke: %s", strerror(errno));
-	int result = receive(control, &packet, error);
+	int result = receive(control, ANSWER_LIMIT_MS, &packet, error);
 	if (result < 0)
 		return result;
 	if (packet.header.type == PURSUIT_MESSAGE_REFUSED)
@@ -168,12 +169,12 @@ static json_t *read_reply(const char *text, size_t length)
 	return json ? json : json_stringn(text, length);
 }
 
-int control_ask(struct control *control, const char *text, int fd, json_t **reply, struct error *error)
+static int ask(struct control *control, const char *text, int fd, int limit_ms, json_t **reply, struct error *error)
 {
 	union packet packet;
 	int result = send_text(control, text, fd, error);
 	if (result == 0)
-		result = receive(control, &packet, error);
+		result = receive(control, limit_ms, &packet, error);
 	if (result < 0)
 		return result;
 	if (packet.header.type == PURSUIT_MESSAGE_REFUSED)
@@ -190,6 +191,16 @@ int control_ask(struct control *control, const char *text, int fd, json_t **repl
 	if (reply)
 		*reply = read_reply(answer, length);
 	return 0;
+}
+
+int control_ask(struct control *control, const char *text, int fd, json_t **reply, struct error *error)
+{
+	return ask(control, text, fd, ANSWER_LIMIT_MS, reply, error);
+}
+
+int control_end_recording(struct control *control, json_t **reply, struct error *error)
+{
+	return ask(control, "record-stop", -1, RECORDING_LIMIT_MS, reply, error);
 }
 
 /* The daemon's `name = value` lines as an object, in their order. */

@@ -29,6 +29,9 @@ void control_close(struct control *control);
  */
 int control_ask(struct control *control, const char *text, int fd, json_t **reply, struct error *error);
 
+/* Ends the recording, and waits until all frames of it are in its file, which may take minutes. As control_ask(). */
+int control_end_recording(struct control *control, json_t **reply, struct error *error);
+
 /* All settings as texts, in the daemon's order. *settings, to be given to json_decref(), only after 0. */
 int control_ask_settings(struct control *control, json_t **settings, struct error *error);
 

@@ -33,7 +33,7 @@ static json_int_t number_of(const json_t *reply, const char *name)
 static int stop(struct control *control, const char *verb, const char *path, json_t **written, struct error *error)
 {
 	json_t *reply = NULL;
-	int result = control_ask(control, "record-stop", -1, &reply, error);
+	int result = control_end_recording(control, &reply, error);
 	if (result < 0)
 		return result;
 	if (number_of(reply, "frames") == 0)

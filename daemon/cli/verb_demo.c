@@ -293,7 +293,7 @@ static int record_burst(struct demo *demo, struct error *error)
 	if (result == 0)
 		result = timeline_fetch(&demo->timeline, &demo->daemon.control, error);
 	if (result == 0)
-		result = control_ask(&demo->daemon.control, "record-stop", -1, NULL, error);
+		result = control_end_recording(&demo->daemon.control, NULL, error);
 	return result;
 }
 
