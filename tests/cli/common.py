@@ -101,7 +101,7 @@ class Case(unittest.TestCase):
             result = run("status", "--json", *arguments, **options)
             return result.returncode == 0 and json.loads(result.stdout)["real_frames"] > count
 
-        self.assertTrue(soon(shown), "no frames arrive")
+        self.assertTrue(soon(shown, 5 * PATIENCE), "no frames arrive")
 
     def record(self, name, **options):
         """A small recording of a scene; options as --name value, underscores for dashes."""

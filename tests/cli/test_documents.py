@@ -117,18 +117,17 @@ class PythonClient(common.Case):
         client = self.client("--seconds", "3000", "--fps", "20")
         reader = threading.Thread(target=client.communicate)  # or the client would wait for somebody who reads
         reader.start()
-        self.wait_for_frames(5, env=self.environment)
-
-        def look():
-            found = common.run("check-stream", "--seconds", "3", "--json", env=self.environment)
-            report = json.loads(found.stdout or "{}")
-            return report.get("pairs", 0) > 5 and (found, report)
-
-        looked = common.soon(look)
-        client.terminate()
-        reader.join()
-        self.assertTrue(looked, "six pairs of frames are never there")
-        found, report = looked
+        try:
+            self.wait_for_frames(5, env=self.environment)
+            for seconds in 3, 20, 100:  # where others have the processors, few frames come of many seconds
+                found = common.run("check-stream", "--seconds", str(seconds), "--json", env=self.environment)
+                report = json.loads(found.stdout or '{"pairs": 0}')
+                if report["pairs"] > 5:
+                    break
+        finally:
+            client.terminate()
+            reader.join()
+        self.assertGreater(report["pairs"], 5, found.stdout + found.stderr)
         mistakes = [one for one in report["findings"] if one["code"].startswith(("motion", "depth", "jitter", "no-"))]
         self.assertEqual(mistakes, [], found.stdout + found.stderr)
 

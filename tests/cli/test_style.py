@@ -68,8 +68,11 @@ class Style(common.Case):
         common.started(cls.daemon, cls.socket)
         cls.client = subprocess.Popen([EXAMPLE, "--seconds", "3000"], stdout=cls.log, stderr=cls.log,
                                       env={**os.environ, "PURSUIT_SOCKET": cls.socket})
-        shown = common.soon(lambda: json.loads(common.run("status", "--json", "--socket", cls.socket).stdout)["real_frames"] > 60)
-        assert shown, "no frames arrive"
+
+        def shown():
+            return json.loads(common.run("status", "--json", "--socket", cls.socket).stdout)["real_frames"] > 60
+
+        assert common.soon(shown, 5 * common.PATIENCE), "no frames arrive"
 
     @classmethod
     def tearDownClass(cls):
