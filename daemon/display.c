@@ -47,6 +47,7 @@ struct display {
 	int wake_fd, retry_fd;
 	uint64_t made_ns, delay_ns;
 	bool taken_away; /* the user was told, and has not answered */
+	bool promised;   /* the user has none, and was told that there will be another */
 
 	pthread_mutex_t lock; /* for what other threads say */
 	pthread_cond_t said;
@@ -196,6 +197,7 @@ static void adopt(struct display *display, struct slot *slot)
 
 static void use(struct display *display, struct slot *slot)
 {
+	display->promised = false;
 	display->params.change(display->params.data, slot->presenter, false);
 	adopt(display, slot);
 }
@@ -216,6 +218,7 @@ static void take_away(struct display *display, struct slot *next, bool lost)
 {
 	display->taken_away = true;
 	display->next = next;
+	display->promised = !next && !lost;
 	loop_remove(&display->presenter_source);
 	display->params.change(display->params.data, next ? next->presenter : NULL, lost);
 }
@@ -271,6 +274,14 @@ static void destroy_now(struct display *display)
 	pthread_mutex_unlock(&display->lock);
 }
 
+/* Nobody knows when there will be one. */
+static void take_promise_back(struct display *display)
+{
+	if (display->promised)
+		display->params.change(display->params.data, NULL, true);
+	display->promised = false;
+}
+
 static void bury(struct display *display)
 {
 	struct slot *next = display->next;
@@ -282,6 +293,7 @@ static void bury(struct display *display)
 		log_info(display->params.log, "%s presents now", next->presenter->impl->name);
 		return;
 	}
+	take_promise_back(display);
 	if (good)
 		display->delay_ns = 0;
 	else
@@ -379,10 +391,12 @@ static int replace(struct display *display, const struct settings *fresh, struct
 		params = params_for(display, slot);
 		slot->presenter = presenter_create(impl->name, &params, &again);
 	}
-	if (slot->presenter)
+	if (slot->presenter) {
 		use(display, slot);
-	else
+	} else {
+		take_promise_back(display);
 		try_later(display);
+	}
 	return result;
 }
 

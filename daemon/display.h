@@ -37,6 +37,8 @@ struct display_params {
 	/*
 	 * On main: this presenter from now on, NULL none. The one before stays valid until the user has answered with
 	 * display_let_go(), which it does soon: at once if that one is `lost`, else when what it was given was shown.
+	 * NULL that is not lost is followed by another presenter or, if none can be made, by NULL that is, which needs no
+	 * answer: there was none.
 	 */
 	void (*change)(void *data, struct presenter *presenter, bool lost);
 	void *data;

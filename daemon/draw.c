@@ -139,7 +139,7 @@ int draw_queue(struct render *render, struct presenter_image *image, uint64_t vb
 		render->awaited_vblank = vblank;
 	}
 	struct showing_frame *frame = showing_find_frame(&render->showing, render->group);
-	if (result == 0 && show == STATS_REAL && frame)
+	if (result == 0 && (show == STATS_REAL || show == STATS_REPEAT) && frame)
 		frame->queued = true;
 	if (result == 0 || result == -EBUSY)
 		render_expect_flips(render);
@@ -198,6 +198,7 @@ static bool take(struct render *render, uint64_t now_ns)
 								 render->stream, &refusal);
 		return false;
 	}
+	render_answer_waiting(render);
 	const struct pursuit_frame_header *header = &render->frame.header;
 	const struct pacer_frame frame = {.frame_id = header->frame_id,
 									  .time_ns = header->time_ns,
@@ -461,6 +462,7 @@ void draw_held(struct render *render, uint64_t vblank)
 	render->orphan = false;
 	draw_forget_kept(render);
 	render->group++;
+	render_show_waiting(render);
 	if (begin(render, &decision))
 		draw_plain(render, vblank);
 }

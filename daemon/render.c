@@ -53,6 +53,7 @@ void render_finish(struct render *render)
 	draw_forget_kept(render);
 	view_finish(&render->view);
 	showing_finish(&render->showing);
+	stream_release(&render->waiting.stream);
 }
 
 void render_forget_costs(struct render *render)
@@ -142,6 +143,9 @@ bool render_go_over(struct render *render)
 	if (!render->next.wished || !may_go_over(render))
 		return false;
 	render->next.wished = false;
+	render->between_presenters = !render->next.presenter && !render->next.at_once;
+	if (!render->next.presenter)
+		render_answer_waiting(render);
 	render_set_presenter(render, render->next.presenter);
 	return true;
 }
@@ -182,6 +186,7 @@ void render_set_streams(struct render *render, struct stream *const *streams, ui
 	}
 	if (shown == render->stream)
 		return;
+	render_answer_waiting(render);
 	render->stream = shown;
 	start_pacer(render);
 	want_held(render);
@@ -220,23 +225,6 @@ void render_set_settings(struct render *render, const struct settings *settings)
 	if (governor)
 		governor_configure(&render->governor, settings->governor == 0, settings->level, clock_now(render->clock));
 	render->settings_changed = render->redraw = true;
-}
-
-void render_skip_frames(struct render *render, struct stream *stream)
-{
-	struct frame frame;
-	struct refusal refusal;
-	const int result = stream_take(stream, clock_now(render->clock), &frame, &refusal);
-	if (result == 1) {
-		const struct pursuit_feedback report = {.frame_id = frame.header.frame_id,
-												.submit_ns = frame.header.submit_ns,
-												.intake_ns = frame.intake_ns,
-												.state = PURSUIT_FEEDBACK_REPLACED};
-		stream_feedback(stream, &report);
-	} else if (result < 0) {
-		render->owner.report(render->owner.data, result == -EPROTO ? OUTPUT_STREAM_BROKEN : OUTPUT_FRAME_REFUSED,
-							 stream, &refusal);
-	}
 }
 
 /* What only this thread knows about a flip. */
@@ -546,7 +534,9 @@ static uint64_t step(struct render *render)
 	bool urgent = false;
 
 	if (!render->presenter) {
-		if (render->stream && !atomic_load(&render->stream->ended))
+		if (has_new_frame(render) && render->between_presenters)
+			render_keep_newest(render);
+		else if (has_new_frame(render))
 			render_skip_frames(render, render->stream);
 		return RENDER_NEVER;
 	}

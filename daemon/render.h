@@ -51,7 +51,12 @@ struct render {
 	bool stand_in;                             /* it is one on the CPU, in place of one that was lost */
 	uint64_t engine_retry_ns, engine_delay_ns; /* after a loss */
 	uint64_t engine_made_ns;
-	struct presenter *presenter; /* the display's; NULL: lost */
+	struct presenter *presenter; /* the display's; NULL: none */
+	bool between_presenters;     /* there is none since another is being made: the newest frame waits for it */
+	struct {
+		struct stream *stream; /* referenced; NULL: none */
+		struct pursuit_feedback report;
+	} waiting;
 	struct {
 		bool wished;
 		struct presenter *presenter; /* that is to be used next, NULL none */
@@ -123,12 +128,13 @@ struct render {
 int render_start(struct render *render, struct error *error);
 void render_finish(struct render *render);
 
-/*
- * Presents there from now on, beginning anew; with NULL (the display is lost) frames are taken and answered with
- * REPLACED until there is one again.
- */
+/* Presents there from now on, beginning anew; NULL: nowhere, until there is one again. */
 void render_set_presenter(struct render *render, struct presenter *presenter);
-/* The same soon; no real frame is begun until then. at_once: the one in use is of no use any more. */
+/*
+ * The same soon; no real frame is begun until then. at_once: the one in use is of no use any more. With NULL the newest
+ * frame waits then for the presenter that is on its way; at once, where nobody knows when there will be one, all are
+ * answered with REPLACED.
+ */
 void render_wish_presenter(struct render *render, struct presenter *presenter, bool at_once);
 /*
  * Goes over to the one wished for: at the boundary of a frame, when each real frame that was given to the one in use
@@ -179,6 +185,15 @@ void render_forget_costs(struct render *render);
 
 /* A picture was queued, or would have been if the presenter had room: vblanks are to be reported from now on. */
 void render_expect_flips(struct render *render);
+
+/* ---- render_waiting.c ---- */
+
+/* Takes the newest frame of the stream that is shown, to be shown when there is a presenter again. */
+void render_keep_newest(struct render *render);
+/* The frame that waits, if any, is not to be shown. */
+void render_answer_waiting(struct render *render);
+/* The frame begun is the one that waits, if it is: it is answered when it has been shown. */
+void render_show_waiting(struct render *render);
 
 /* ---- draw.c ---- */
 

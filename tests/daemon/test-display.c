@@ -95,15 +95,18 @@ struct user {
 	struct display *display; /* is let go of at once; NULL: when the test says so */
 	struct presenter *presenter;
 	unsigned changes;
+	bool waits; /* there is none, and another was promised */
 };
 
 static void on_change(void *data, struct presenter *presenter, bool lost)
 {
 	struct user *user = data;
+	const bool had_one = user->presenter != NULL;
 	CHECK(!lost || !presenter);
 	user->presenter = presenter;
+	user->waits = !presenter && !lost;
 	user->changes++;
-	if (user->display)
+	if (user->display && had_one)
 		display_let_go(user->display);
 }
 
@@ -371,6 +374,7 @@ static void test_other_settings(void)
 		snprintf(fresh.monitor, sizeof(fresh.monitor), "%u", i);
 		CHECK_INT(display_prepare(fixture.display, &fresh, &error), 0);
 		CHECK_INT(fixture.user.changes, changes + 2); /* none, and the other one */
+		CHECK(!fixture.user.waits);
 		display_commit(fixture.display);
 		CHECK_STRING(fake.params.options.monitor, fresh.monitor);
 		CHECK_INT(fake.living, 1);
@@ -405,6 +409,41 @@ static void test_other_settings(void)
 	fixture_finish(&fixture);
 }
 
+/* Neither the other one nor that of before: the user is told not to wait. */
+static void test_neither_works(void)
+{
+	struct fixture fixture;
+	struct error error = {""};
+	struct settings fresh;
+	fixture_init(&fixture);
+	fake_impl.kind = PRESENTER_WINDOW;
+	fixture.display = create(&fixture, &error);
+	fixture.user.display = fixture.display;
+	fresh = fixture.settings;
+	snprintf(fresh.monitor, sizeof(fresh.monitor), "1");
+	fake.failures = 2;
+	CHECK(display_prepare(fixture.display, &fresh, &error) < 0);
+	CHECK_INT(fixture.user.changes, 3); /* it goes, and no other comes */
+	CHECK(!fixture.user.presenter && !fixture.user.waits);
+	step_until_changes(&fixture, 4);
+	CHECK(fixture.user.presenter == &fake.presenter);
+	CHECK_STRING(fake.params.options.monitor, "");
+
+	/* One that is let go of too late to wait for it. */
+	fixture.user.display = NULL;
+	CHECK_INT(display_prepare(fixture.display, &fresh, &error), -ETIMEDOUT);
+	CHECK_INT(fixture.user.changes, 5);
+	CHECK(!fixture.user.presenter && fixture.user.waits);
+	fake.failures = 1;
+	display_let_go(fixture.display);
+	step_until_changes(&fixture, 6);
+	CHECK(!fixture.user.presenter && !fixture.user.waits);
+	step_until_changes(&fixture, 7);
+	CHECK(fixture.user.presenter == &fake.presenter);
+	fake_impl.kind = PRESENTER_MEMORY;
+	fixture_finish(&fixture);
+}
+
 int main(void)
 {
 	RUN(test_lost_and_found);
@@ -416,5 +455,6 @@ int main(void)
 	RUN(test_better_one);
 	RUN(test_better_one_lost);
 	RUN(test_other_settings);
+	RUN(test_neither_works);
 	return test_result();
 }

@@ -2,158 +2,15 @@
 /* SPDX-FileCopyrightText: 2026 The Pursuit authors */
 
 /*
- * The picture that stays while nothing moves: one that missed its vblank is drawn again, and then all sleeps. The
- * presenter is the headless one's memory and queue, on a virtual clock, and refuses what it is told to.
+ * The picture that stays while nothing moves: one that missed its vblank is drawn again, and then all sleeps, once it
+ * is shown, and recorded.
  */
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "daemon/present/pictures.h"
-#include "daemon/render.h"
-#include "tests/engine/picture.h"
-#include "tests/test.h"
-
-#define MS UINT64_C(1000000)
-
-static struct {
-	struct clock_virtual clock;
-	struct log log;
-	struct settings settings;
-	struct stats stats;
-	struct presenter_impl impl;
-	struct pictures pictures;
-	struct render render;
-	struct picture picture;
-	unsigned refusals, refused, taken;
-	unsigned full, lacks; /* so often there is no picture to draw into; there was none */
-	uint64_t drawing_ns;  /* that a picture takes */
-	bool silent;          /* flips are told later */
-	bool held_up;         /* the presenter shows nothing for the moment */
-	struct presenter_flip untold[512];
-	uint32_t untold_count;
-	unsigned closed; /* tees */
-} world;
-
-static int acquire(struct presenter *presenter, uint32_t width, uint32_t height, struct presenter_image *image)
-{
-	clock_wait_until(&world.clock.clock, clock_now(&world.clock.clock) + world.drawing_ns);
-	if (world.full > 0) {
-		world.full--;
-		world.lacks++;
-		return -EBUSY;
-	}
-	return pictures_acquire(presenter, width, height, image);
-}
-
-static int present(struct presenter *presenter, const struct presenter_image *image, uint64_t vblank, uint64_t group,
-				   uint64_t serial)
-{
-	if (world.refusals > 0) {
-		world.refusals--;
-		world.refused++;
-		return -ETIME;
-	}
-	world.taken++;
-	return pictures_present(presenter, image, vblank, group, serial);
-}
-
-static void on_engine(void *data, const struct engine_info *info)
-{
-	(void)data;
-	(void)info;
-}
-
-static void on_close(void *data, struct tee *tee)
-{
-	(void)data;
-	tee_destroy(&tee);
-	world.closed++;
-}
-
-static void world_init(void)
-{
-	const struct presenter_params params = {
-		.clock = &world.clock.clock, .log = &world.log, .refresh_numerator = 120, .refresh_denominator = 1};
-	struct error error = {""};
-	memset(&world, 0, sizeof(world));
-	log_init(&world.log, LOG_LEVEL_ERROR);
-	clock_init_virtual(&world.clock, 1000 * MS);
-	settings_defaults(&world.settings);
-	CHECK_INT(settings_set(&world.settings, "context", "cpu", &error), 0);
-	world.impl = presenter_headless;
-	world.impl.present = present;
-	world.impl.acquire = acquire;
-	pictures_init(&world.pictures, &world.impl, &params);
-	struct render *render = &world.render;
-	*render = (struct render){.settings = &world.settings,
-							  .clock = &world.clock.clock,
-							  .log = &world.log,
-							  .stats = &world.stats,
-							  .owner = {.engine_made = on_engine, .close_tee = on_close}};
-	CHECK_INT(render_start(render, &error), 0);
-	render_set_presenter(render, &world.pictures.presenter);
-}
-
-static void world_finish(void)
-{
-	render_finish(&world.render);
-	pictures_finish(&world.pictures);
-	if (world.picture.memory)
-		picture_finish(&world.picture);
-}
-
-static void tell(const struct presenter_flip *flip)
-{
-	if (!world.silent)
-		render_flip(&world.render, flip);
-	else if (world.untold_count < sizeof(world.untold) / sizeof(world.untold[0]))
-		world.untold[world.untold_count++] = *flip;
-}
-
-static void tell_untold(void)
-{
-	world.silent = false;
-	for (uint32_t i = 0; i < world.untold_count; i++)
-		tell(&world.untold[i]);
-	world.untold_count = 0;
-}
-
-/* What is due within some vblanks is done, and each of them shown. */
-static void run(uint32_t vblanks)
-{
-	const struct grid *grid = &world.pictures.grid;
-	const uint64_t first = grid_at_or_after(grid, clock_now(&world.clock.clock)) + 1;
-	for (uint64_t vblank = first; vblank < first + vblanks; vblank++) {
-		const uint64_t vblank_ns = grid_time(grid, vblank);
-		for (uint32_t step = 0; step < 1000 && clock_now(&world.clock.clock) < vblank_ns; step++) {
-			const uint64_t next_ns = render_step(&world.render);
-			clock_wait_until(&world.clock.clock, next_ns < vblank_ns ? next_ns : vblank_ns);
-		}
-		if (world.pictures.running && world.pictures.next_vblank <= vblank && !world.held_up) {
-			const struct presenter_flip flip = pictures_show_next(&world.pictures, vblank_ns);
-			tell(&flip);
-		}
-	}
-}
-
-/* A boosted real frame is on display, and nothing comes after it. */
-static void show_boosted(void)
-{
-	const struct engine_begin_params params = {.n = 2, .last_phase = 0.5, .real_interval_ns = 16 * MS};
-	struct error error = {""};
-	picture_init(&world.picture, 64, 64, PURSUIT_FORMAT_BGRA8, PICTURE_DEPTH | PICTURE_MOTION);
-	picture_draw_layers(&world.picture, 1.0);
-	struct frame frame = world.picture.frame;
-	frame.stream = frame.header.frame_id = 1;
-	CHECK_INT(engine_begin(world.render.engine, &frame, &params, &error), 0);
-	world.render.begun = true;
-	world.render.group = 1;
-	world.render.paused = false;
-}
+#include "tests/daemon/render-world.h"
 
 static void test_the_view_changes_while_nothing_moves(void)
 {
@@ -305,78 +162,6 @@ static void test_a_recording_before_a_pause(void)
 	}
 }
 
-/* ---- what a client hears of its last frame before a pause ---- */
-
-static struct stream client = {.number = 1};
-static struct pursuit_shm_control client_control;
-
-/* Its real frame was given to the presenter, for a vblank soon; the flip is not told. */
-static void show_real_frame_of_client(void)
-{
-	struct presenter_image image;
-	memset(&client_control, 0, sizeof(client_control));
-	client.control = &client_control;
-	client.feedback_count = 0;
-	atomic_init(&client.references, 1);
-	atomic_init(&client.ended, false);
-	show_boosted();
-	world.silent = true;
-	world.render.stream_number = client.number;
-	showing_add_frame(&world.render.showing, 1, &client, &world.picture.frame);
-	const uint64_t vblank = render_first_vblank(&world.render) + 1;
-	CHECK_INT(pictures_acquire(&world.pictures.presenter, 64, 64, &image), 0);
-	CHECK_INT(draw_queue(&world.render, &image, vblank, STATS_REAL, 0.0), 0);
-	CHECK_INT(atomic_load(&client.references), 2);
-	world.render.next_vblank = vblank + 1;
-}
-
-/* However long a flip takes to be told, its frame was shown then; of one that never ends a report comes all the same.
- */
-static void test_a_flip_that_ends_late(void)
-{
-	const struct pursuit_feedback *report = &client_control.feedback[0];
-	for (uint32_t vblanks = 10; vblanks <= 450; vblanks += 40) {
-		world_init();
-		show_real_frame_of_client();
-		run(vblanks);
-		const bool given_up = vblanks > 30 + 256; /* SLEEP_ANYWAY after the pause has begun */
-		CHECK_INT(client_control.feedback_count, given_up ? 1 : 0);
-		const uint64_t flip_ns = world.untold[0].flip_ns;
-		tell_untold();
-		run(100);
-		CHECK(world.render.paused);
-		CHECK_INT(client_control.feedback_count, 1);
-		CHECK_INT(report->state, given_up ? PURSUIT_FEEDBACK_REPLACED : PURSUIT_FEEDBACK_SHOWN);
-		CHECK_INT(report->flip_ns, given_up ? 0 : flip_ns);
-		CHECK_INT(world.stats.lost_real_frames, given_up ? 1 : 0);
-		CHECK_INT(world.stats.real_frames, given_up ? 0 : 1);
-		CHECK_INT(atomic_load(&client.references), 1);
-		world_finish();
-	}
-}
-
-/* The presenter itself was held up, and has skipped the vblank: it shows the frame when it goes on. */
-static void test_a_frame_whose_vblank_is_skipped(void)
-{
-	for (uint32_t vblanks = 1; vblanks <= 200; vblanks += 14) {
-		world_init();
-		show_real_frame_of_client();
-		world.silent = false;
-		world.held_up = true;
-		run(vblanks);
-		CHECK_INT(client_control.feedback_count, 0);
-		world.held_up = false;
-		run(200);
-		CHECK(world.render.paused);
-		CHECK_INT(client_control.feedback_count, 1);
-		CHECK_INT(client_control.feedback[0].state, PURSUIT_FEEDBACK_SHOWN);
-		CHECK_INT(world.stats.lost_real_frames, 0);
-		CHECK_INT(world.stats.real_frames, 1);
-		CHECK(world.pictures.flips.front.serial == world.render.serial && world.render.front_plain);
-		world_finish();
-	}
-}
-
 /* What is to stay was queued for a vblank that was skipped: it is there in the end. */
 static void test_a_picture_whose_vblank_is_skipped(void)
 {
@@ -394,46 +179,6 @@ static void test_a_picture_whose_vblank_is_skipped(void)
 		CHECK(world.render.paused && !world.pictures.running);
 		world_finish();
 	}
-}
-
-/* Nothing is kept of one that is gone. */
-static void test_a_client_that_is_gone_before_its_flip(void)
-{
-	world_init();
-	show_real_frame_of_client();
-	run(100);
-	CHECK_INT(atomic_load(&client.references), 2);
-	atomic_store(&client.ended, true);
-	render_set_streams(&world.render, NULL, 0);
-	CHECK_INT(atomic_load(&client.references), 1);
-	tell_untold();
-	run(100);
-	CHECK(world.render.paused);
-	CHECK_INT(client_control.feedback_count, 0);
-	CHECK_INT(world.stats.real_frames, 1);
-	world_finish();
-}
-
-/* The display took the plain picture of the pause before it came to the real frame's own: that is the frame, too. */
-static void test_a_frame_shown_as_its_plain_picture(void)
-{
-	struct presenter_flip flip = {.vblank = 7, .flip_ns = 5 * MS, .group = 1, .shown = PRESENTER_PICTURE};
-	world_init();
-	show_real_frame_of_client();
-	world.render.group++;
-	showing_add_frame(&world.render.showing, 2, &client, &world.picture.frame);
-	showing_settle_frames(&world.render.showing, 3);
-	CHECK_INT(client_control.feedback_count, 0);
-	flip.serial = 100;
-	showing_add_picture(&world.render.showing,
-						&(struct showing_picture){.serial = 100, .group = 1, .show = STATS_REPEAT, .ready_ns = MS});
-	render_flip(&world.render, &flip);
-	/* And the one after it, which was given no picture, is told of after it. */
-	CHECK_INT(client_control.feedback_count, 2);
-	CHECK_INT(client_control.feedback[0].state, PURSUIT_FEEDBACK_SHOWN);
-	CHECK_INT(client_control.feedback[0].flip_ns, 5 * MS);
-	CHECK_INT(client_control.feedback[1].state, PURSUIT_FEEDBACK_REPLACED);
-	world_finish();
 }
 
 /* ---- what drawing costs ---- */
@@ -521,11 +266,7 @@ int main(void)
 	RUN(test_a_boosted_picture_does_not_stay);
 	RUN(test_a_presenter_that_takes_nothing);
 	RUN(test_a_recording_before_a_pause);
-	RUN(test_a_flip_that_ends_late);
-	RUN(test_a_frame_whose_vblank_is_skipped);
 	RUN(test_a_picture_whose_vblank_is_skipped);
-	RUN(test_a_client_that_is_gone_before_its_flip);
-	RUN(test_a_frame_shown_as_its_plain_picture);
 	RUN(test_costs_are_kept);
 	RUN(test_no_picture_to_draw_into);
 	return test_result();
