@@ -80,3 +80,14 @@ void arguments_finish(struct arguments *arguments)
 {
 	profiles_finish(&arguments->profiles);
 }
+
+void origins_tell(const struct origin *origins, struct error *error)
+{
+	const struct error before = *error;
+	for (const struct option_row *row = option_table(); row->name; row++) {
+		const struct origin *origin = &origins[row - option_table()];
+		const size_t length = strlen(row->name);
+		if (origin->kind == ORIGIN_FILE && strncmp(before.text, row->name, length) == 0 && before.text[length] == ':')
+			error_set(error, 0, "%s:%u: %.400s", origin->file, origin->line, before.text);
+	}
+}

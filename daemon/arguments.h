@@ -40,4 +40,10 @@ struct arguments {
 int arguments_read(struct arguments *arguments, int argc, char **argv, struct error *error);
 void arguments_finish(struct arguments *arguments);
 
+/*
+ * Puts file and line in front of a sentence that begins with the name of a setting and a colon, if the value came from
+ * a file; for what is found wrong with a value only when it is used. `origins`: by the place of the row.
+ */
+void origins_tell(const struct origin *origins, struct error *error);
+
 #endif

@@ -242,6 +242,7 @@ unsigned live_reload(struct live *live, struct arguments *fresh, struct error *m
 	int changed = settle(live, mistake);
 	if (changed >= 0)
 		return (unsigned)changed;
+	origins_tell(live->origins, mistake);
 	log_error(live->log, "%s; what else needs something new stays as it is, too", mistake->text);
 	take_rows(live, &before, origins, true);
 	struct error error;

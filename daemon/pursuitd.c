@@ -311,6 +311,7 @@ int main(int argc, char **argv)
 	/* Names that there are not would lock out whom they were meant to let in. */
 	daemon.admission = admission_create(&admission_params, &error);
 	if (!daemon.admission) {
+		origins_tell(arguments.origins, &error);
 		arguments_finish(&arguments);
 		return usage_error(error.text);
 	}
@@ -319,6 +320,7 @@ int main(int argc, char **argv)
 	reload_init(&daemon.reload, &daemon.live, &daemon.log, &arguments, argc, argv);
 	status = 0;
 	if (start(&daemon, &error) < 0) {
+		origins_tell(daemon.live.origins, &error);
 		log_error(&daemon.log, "%s", error.text);
 		status = 1;
 	} else {

@@ -166,7 +166,17 @@ static void test_unknown_names(void)
 	const char *const arguments[] = {"--allow-users", "no-such-user-here", NULL};
 	fixture_spawn(&fixture, arguments);
 	CHECK_INT(fixture_join(&fixture), 2);
-	CHECK(fixture_logged(&fixture, "allow-users: there is no user \"no-such-user-here\""));
+	CHECK(fixture_logged(&fixture, "pursuitd: allow-users: there is no user \"no-such-user-here\""));
+
+	char config[96], want[192];
+	snprintf(config, sizeof(config), "%s/config", fixture.folder);
+	snprintf(want, sizeof(want), "pursuitd: %s:2: allow-groups: there is no group \"no-such-group\"", config);
+	FILE *file = fopen(config, "w");
+	CHECK(file && fputs("# who\nallow-groups = no-such-group\n", file) >= 0 && fclose(file) == 0);
+	const char *const with_file[] = {"--config", config, NULL};
+	fixture_spawn(&fixture, with_file);
+	CHECK_INT(fixture_join(&fixture), 2);
+	CHECK(fixture_logged(&fixture, want));
 }
 
 /* ---- limits ---- */

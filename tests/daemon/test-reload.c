@@ -102,6 +102,18 @@ static void test_half_written(void)
 	CHECK(setting_comes("\ncell = 41\n") && question_setting(fd, "\nblur-level = 3\n"));
 }
 
+/* What is wrong with a value only when it is used: a name that there is not. */
+static void test_unknown_name(void)
+{
+	char want[256];
+	write_file(config, "cell = 40\n\nallow-users = no-such-user-here\n");
+	snprintf(want, sizeof(want), "%s:3: allow-users: there is no user \"no-such-user-here\"; what else needs", config);
+	CHECK(fixture_logged(&fixture, want));
+	CHECK(setting_comes("\ncell = 40\n") && question_setting(fd, "\nallow-users = \n"));
+	write_file(config, "cell = 41\nblur-level = 3\n");
+	CHECK(setting_comes("\ncell = 41\n"));
+}
+
 /* A file that is open for writing is not read, even if it is empty for a while. */
 static void test_slow_writer(void)
 {
@@ -371,6 +383,7 @@ int main(int argc, char **argv)
 	RUN(test_in_place);
 	RUN(test_replaced);
 	RUN(test_half_written);
+	RUN(test_unknown_name);
 	RUN(test_slow_writer);
 	RUN(test_deleted);
 	RUN(test_burst);
