@@ -22,6 +22,8 @@
 #define STEP 10
 #define LEVELS 20u
 #define SPACING 3 /* so that they can be told apart after rounding */
+/* Pixels a frame; with three the eye would lose it on a display of 64 pixels, and no in-betweens be made of it. */
+#define MOTION 1.0f
 #define RUNS_MOST 64u
 
 /* Stripes along the motion look the same wherever they have moved to. */
@@ -74,7 +76,7 @@ static void submit(struct player *player)
 		float *motion = (float *)(void *)(frame->motion.data + y * frame->motion.stride);
 		for (uint32_t x = 0; x < WIDTH; x++) {
 			depth[x] = 0.5f;
-			motion[2 * x] = 3.0f;
+			motion[2 * x] = MOTION;
 			motion[2 * x + 1] = 0.0f;
 		}
 	}
