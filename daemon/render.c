@@ -245,11 +245,12 @@ static void tell_lab(struct render *render, const struct presenter_flip *flip)
 	lab_tell(render->lab, &points);
 }
 
-/* A presenter that skipped its vblank has dropped it: if it was to stay it is drawn again. */
+/* A presenter that was late for its vblank has dropped it: if it was to stay it is drawn again. */
 static void note_awaited(struct render *render, const struct presenter_flip *flip)
 {
 	const bool shown = flip->serial == render->awaited;
-	const bool dropped = !shown && flip->skipped > 0 && flip->vblank >= render->awaited_vblank;
+	const bool missed = flip->skipped > 0 || flip->dropped;
+	const bool dropped = !shown && missed && flip->vblank >= render->awaited_vblank;
 	if (dropped && render->awaited != 0)
 		render->front_plain = render->front_black = false;
 	if (shown || dropped)

@@ -114,6 +114,7 @@ enum presenter_shown flips_show(struct flips *flips, uint64_t vblank)
 	for (uint32_t i = 0; i < due; i++)
 		if ((int)i != chosen)
 			flips_release(flips, flips->queue[i].image);
+	flips->dropped = due > 0 && chosen != (int)due - 1;
 	flips->queued -= due;
 	memmove(&flips->queue[0], &flips->queue[due], flips->queued * sizeof(flips->queue[0]));
 	return chosen >= 0 ? PRESENTER_PICTURE : show_standby(flips);

@@ -33,6 +33,7 @@ struct flips {
 	uint32_t standbys;
 	struct flips_picture front;
 	bool has_front;
+	bool dropped;                     /* as in struct presenter_flip, of the vblank shown last */
 	uint8_t references[FLIPS_IMAGES]; /* acquired, queued, standing by, on display */
 };
 

@@ -45,6 +45,7 @@ struct presenter_flip pictures_show_next(struct pictures *pictures, uint64_t now
 	flip.vblank = pictures->next_vblank++;
 	flip.target_ns = grid_time(&pictures->grid, flip.vblank);
 	flip.shown = flips_show(&pictures->flips, flip.vblank);
+	flip.dropped = pictures->flips.dropped;
 	flip.late = flip.shown == PRESENTER_PICTURE && pictures->flips.front.vblank < flip.vblank;
 	if (pictures->flips.has_front) {
 		flip.serial = pictures->flips.front.serial;

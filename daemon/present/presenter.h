@@ -95,6 +95,7 @@ struct presenter_flip {
 	enum presenter_shown shown;
 	bool late;        /* handled only after the next vblank's time, or at a later one than it was queued for */
 	uint32_t skipped; /* vblanks just before this one that were not handled at all */
+	bool dropped;     /* the last picture queued for this vblank or before it came too late, and is never shown */
 };
 
 /* A key was pressed. */

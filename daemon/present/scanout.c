@@ -24,6 +24,7 @@ int scanout_choose(struct scanout *scanout, uint64_t vblank)
 	struct flips *flips = &scanout->flips;
 	const enum presenter_shown chosen_as = flips_show(flips, vblank);
 
+	scanout->dropped |= flips->dropped;
 	if (chosen_as != PRESENTER_KEPT) {
 		scanout->chosen_as = chosen_as;
 		scanout->chosen_vblank = chosen_as == PRESENTER_PICTURE ? flips->front.vblank : vblank;
@@ -53,7 +54,8 @@ static void report(struct scanout *scanout, const struct presenter_flip *flip, s
 	out->shown = scanout->fresh ? scanout->fresh_as : PRESENTER_KEPT;
 	out->late = scanout->fresh && scanout->fresh_late;
 	out->skipped = 0;
-	scanout->fresh = false;
+	out->dropped = scanout->dropped;
+	scanout->fresh = scanout->dropped = false;
 	scanout->told = flip->vblank + 1;
 }
 

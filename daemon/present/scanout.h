@@ -41,6 +41,7 @@ struct scanout {
 	enum presenter_shown fresh_as;
 	struct presenter_flip waiting; /* a vblank whose flip has not been heard of */
 	bool is_waiting;
+	bool dropped;         /* as in struct presenter_flip, for the next report */
 	uint64_t next_vblank; /* the first that is to be reported */
 	uint64_t told;        /* reports so far were of vblanks below this one */
 	bool paused;

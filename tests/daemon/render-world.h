@@ -32,6 +32,7 @@ static struct {
 	uint64_t drawing_ns;  /* that a picture takes */
 	bool silent;          /* flips are told later */
 	bool held_up;         /* the presenter shows nothing for the moment */
+	bool skips_none;      /* it tells of each vblank, as a display controller does, though it was late for it */
 	struct presenter_flip untold[512];
 	uint32_t untold_count;
 	unsigned closed; /* tees */
@@ -133,7 +134,8 @@ static inline void run(uint32_t vblanks)
 			clock_wait_until(&world.clock.clock, next_ns < vblank_ns ? next_ns : vblank_ns);
 		}
 		if (world.pictures.running && world.pictures.next_vblank <= vblank && !world.held_up) {
-			const struct presenter_flip flip = pictures_show_next(&world.pictures, vblank_ns);
+			struct presenter_flip flip = pictures_show_next(&world.pictures, vblank_ns);
+			flip.skipped = world.skips_none ? 0 : flip.skipped;
 			tell(&flip);
 		}
 	}

@@ -67,9 +67,11 @@ static void test_skipped_vblanks(void)
 	present(&flips, 3, 1, 3);
 	expect(&flips, 1, PRESENTER_PICTURE, 1);
 	expect(&flips, 3, PRESENTER_PICTURE, 3);
+	CHECK(!flips.dropped);
 	CHECK_INT(in_use(&flips), 1);
 	present(&flips, 5, 1, 4);
 	expect(&flips, 9, PRESENTER_KEPT, 3);
+	CHECK(flips.dropped);
 	CHECK_INT(in_use(&flips), 1);
 }
 
@@ -87,7 +89,9 @@ static void test_skipped_real_frame(void)
 	present(&flips, 23, 3, 6);
 	present(&flips, 24, 3, 7);
 	expect(&flips, 23, PRESENTER_PICTURE, 4);
+	CHECK(flips.dropped);
 	expect(&flips, 24, PRESENTER_PICTURE, 7);
+	CHECK(!flips.dropped);
 	present(&flips, 30, 4, 8);
 	present(&flips, 31, 5, 9);
 	present(&flips, 32, 5, 10);

@@ -242,6 +242,28 @@ static void test_random(void)
 	}
 }
 
+/* A vblank comes before its picture was chosen: one of the frame on display is dropped, and that is told. */
+static void test_a_choice_that_comes_too_late(void)
+{
+	struct scanout scanout = {0};
+	struct presenter_flip reports[2];
+	queue(&scanout, 0, 1, 1);
+	scanout_choose(&scanout, 0);
+	flip_ends(&scanout, 0, reports);
+	CHECK_INT(vblank_comes(&scanout, 0, reports), 1);
+	CHECK(!reports[0].dropped);
+	queue(&scanout, 1, 1, 2);
+	CHECK_INT(vblank_comes(&scanout, 1, reports), 1);
+	CHECK(!reports[0].dropped);
+	CHECK_INT(scanout_choose(&scanout, 2), -1);
+	CHECK_INT(vblank_comes(&scanout, 2, reports), 1);
+	expect(&reports[0], 2, PRESENTER_KEPT, 1, false);
+	CHECK(reports[0].dropped && reports[0].skipped == 0);
+	CHECK_INT(in_use(&scanout), 1);
+	CHECK_INT(vblank_comes(&scanout, 3, reports), 1);
+	CHECK(!reports[0].dropped);
+}
+
 int main(void)
 {
 	RUN(test_either_order);
@@ -251,6 +273,7 @@ int main(void)
 	RUN(test_flip_in_a_pause);
 	RUN(test_pause_that_is_waited_in);
 	RUN(test_skipped_vblanks);
+	RUN(test_a_choice_that_comes_too_late);
 	RUN(test_standby);
 	RUN(test_random);
 	return test_result();
