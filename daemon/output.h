@@ -79,7 +79,8 @@ struct output;
 
 /* Opens the display, starts the render thread and waits until its engine is there. NULL with a sentence. */
 struct output *output_create(const struct output_params *params, struct error *error);
-/* Nothing is drawn from now on, whatever goes after this: streams that end with the daemon are no clients that leave.
+/*
+ * Nothing is drawn from now on, whatever goes after this: streams that end with the daemon are no clients that leave.
  */
 void output_stop(struct output *output);
 /* Stops and joins. NULL accepted. */

@@ -38,8 +38,7 @@ int peer_open_process(int socket, pid_t pid)
 		return -1;
 	if (getsockopt(socket, SOL_SOCKET, PEER_PIDFD, &process, &size) == 0)
 		return process;
-	/* Only where there is no such option: up to Linux 6.15 it fails when the peer has ended, and its number is reused.
-	 */
+	/* Only where there is no such option: up to Linux 6.15 it fails once the peer has ended; its number is reused. */
 	return errno == ENOPROTOOPT ? (int)syscall(SYS_pidfd_open, pid, 0) : -1;
 }
 
@@ -75,7 +74,8 @@ bool peer_has_names(const char *words)
 	return false;
 }
 
-/* Calls one of the next two with more and more room. 0 with the number, -ENOENT: there is none, or why it is not known.
+/*
+ * Calls one of the next two with more and more room. 0 with the number, -ENOENT: there is none, or why it is not known.
  */
 static int look_up(int (*find)(const char *name, char *room, size_t size, uint32_t *number), const char *name,
 				   uint32_t *number)

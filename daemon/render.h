@@ -179,8 +179,7 @@ uint64_t render_first_vblank(const struct render *render);
 /* What a real frame from its intake to its picture, there as early as the presenter wants it, is expected to take. */
 uint64_t render_real_cost(const struct render *render);
 
-/* What pictures other than real ones cost is to be learned anew: they are made or written in another way from now on.
- */
+/* What pictures other than real ones cost is to be learned anew: they are made or written in another way now. */
 void render_forget_costs(struct render *render);
 
 /* A picture was queued, or would have been if the presenter had room: vblanks are to be reported from now on. */

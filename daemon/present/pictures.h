@@ -45,8 +45,8 @@ void pictures_finish(struct pictures *pictures);
 
 /*
  * With the lock: handles vblank next_vblank, that is, changes the front; says what is known before it is really shown.
- * A thread that slept over many vblanks skips them rather than showing them in a burst; a real
- * frame that was queued for one of them is late. now_ns: for that.
+ * A thread that slept over many vblanks skips them rather than showing them in a burst; a real frame that was queued
+ * for one of them is late. now_ns: for that.
  */
 struct presenter_flip pictures_show_next(struct pictures *pictures, uint64_t now_ns);
 

@@ -30,8 +30,7 @@ static void show_real_frame_of_client(void)
 	world.render.next_vblank = vblank + 1;
 }
 
-/* However long a flip takes to be told, its frame was shown then; of one that never ends a report comes all the same.
- */
+/* However long a flip takes to be told, its frame was shown then; of one that never ends there is a report, too. */
 static void test_a_flip_that_ends_late(void)
 {
 	const struct pursuit_feedback *report = &client_control.feedback[0];
@@ -200,8 +199,7 @@ static void test_frames_between_presenters(void)
 	}
 }
 
-/* The one that waits is answered, whatever comes instead: a newer one, no presenter after all, the end of the stream.
- */
+/* The one that waits is answered, whatever comes instead: a newer one, no presenter, the end of the stream. */
 static void test_frame_that_waited_for_nothing(void)
 {
 	for (unsigned what = 0; what < 3; what++) {
