@@ -44,16 +44,20 @@ class Demo(common.Case):
                                 env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
         def shown():
-            if os.getpriority(os.PRIO_PROCESS, demo.pid) == 19:
-                self.gave_way = True
-                common.hurry(demo.pid)
+            self.see_it_give_way(demo.pid)
             status = self.socket() and common.run("status", "--json", "--socket", self.socket()).stdout
             return status and json.loads(status)["real_frames"] > 20
 
         if not common.soon(shown, patience=5 * common.PATIENCE):
             demo.kill()
             self.fail(f"no frame of the demo is shown: {demo.communicate()}")
+        self.see_it_give_way(demo.pid)
         return demo
+
+    def see_it_give_way(self, pid):
+        if os.getpriority(os.PRIO_PROCESS, pid) == 19:
+            self.gave_way = True
+            common.hurry(pid)
 
     def assert_nothing_left(self):
         self.assertEqual([name for name in os.listdir(self.folder) if name.startswith("pursuit-")], [])
