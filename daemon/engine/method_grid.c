@@ -71,7 +71,8 @@ static int sort_mesh(struct engine *engine, double phase, struct error *error)
 {
 	bool tears = engine->params.blur != ENGINE_BLUR_OFF;
 	struct warp_mesh *mesh = &engine->mesh;
-	int result = engine->bend.bent ? make_mesh(engine, phase, error) : 0;
+	/* Without triangles: memory ran out for the picture before. */
+	int result = engine->bend.bent || mesh->count == 0 ? make_mesh(engine, phase, error) : 0;
 	if (result == 0)
 		result = warp_mesh_sort(mesh, (float)phase, tears, !engine->has_depth, error);
 	/* Merged without a look at depths, since nothing folds at the last phase; but here it does. */

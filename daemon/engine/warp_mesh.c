@@ -54,11 +54,13 @@ int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float toler
 	mesh->plan = plan;
 	mesh->pool = plan->index_count / 3 >= LEAST_SHARED ? pool : NULL;
 	mesh->tolerance = tolerance > 0.0f ? tolerance : 0.0f;
-	mesh->count = tolerance < 0.0f ? plan->index_count : merge_find(&mesh->merge, plan, tolerance, mesh->pool);
-	if (!mesh->count)
+	mesh->count = 0;
+	const uint32_t count = tolerance < 0.0f ? plan->index_count : merge_find(&mesh->merge, plan, tolerance, mesh->pool);
+	if (!count)
 		return error_set(error, -ENOMEM, "out of memory for %u cells", plan->index_count / 6);
-	if (!reserve(mesh, mesh->count, plan->index_count))
-		return error_set(error, -ENOMEM, "out of memory for %u triangles", mesh->count / 3);
+	if (!reserve(mesh, count, plan->index_count))
+		return error_set(error, -ENOMEM, "out of memory for %u triangles", count / 3);
+	mesh->count = count;
 	if (tolerance < 0.0f)
 		memcpy(mesh->triangles, plan->indices, plan->index_count * sizeof(*plan->indices));
 	else

@@ -64,7 +64,8 @@ struct warp_mesh {
 
 /*
  * Takes the plan, which must stay until the next one. `tolerance`: pixels that a vertex may be
- * off for cells to be merged; negative: none are. `pool` is used by the sorts too. 0 or -ENOMEM with a sentence.
+ * off for cells to be merged; negative: none are. `pool` is used by the sorts too. 0 or -ENOMEM with a sentence:
+ * then `count` is 0 and it is to be called again before the next sort.
  */
 int warp_mesh_begin(struct warp_mesh *mesh, const struct plan *plan, float tolerance, struct pool *pool,
 					struct error *error);

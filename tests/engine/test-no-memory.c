@@ -108,8 +108,8 @@ static void draw(struct picture *picture, uint32_t frame)
 	memset(picture_row(picture, PURSUIT_ROLE_UI, 70), 0x60, (size_t)2 * WIDTH);
 	for (uint32_t y = 0; y < HEIGHT; y++)
 		for (uint32_t x = 0; x < WIDTH; x++) {
-			const uint32_t part = ((x + 5 * frame) / 40 + y / 30) % 3;
-			picture_set_motion(picture, x, y, 9.0f * (float)part - 6.0f, part == 2 ? -8.0f : 2.0f);
+			const uint32_t part = ((x + 5 * frame) / 60 + y / 50) % 3;
+			picture_set_motion(picture, x, y, 16.0f * (float)part - 12.0f, part == 2 ? -8.0f : 2.0f);
 			picture_set_depth(picture, x, y, 0.2f + 0.3f * (float)part);
 		}
 }
