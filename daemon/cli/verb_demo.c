@@ -357,16 +357,6 @@ static json_t *make_report(const struct demo *demo)
 	return report;
 }
 
-static int write_report(const json_t *report, const char *path, struct error *error)
-{
-	FILE *file = fopen(path, "w");
-	if (!file)
-		return error_set(error, -errno, "%s: %s", path, strerror(errno));
-	bool wrong = json_dumpf(report, file, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) != 0 || fputc('\n', file) == EOF;
-	wrong |= fclose(file) != 0;
-	return wrong ? error_set(error, -EIO, "%s: not written whole: %s", path, strerror(errno)) : 0;
-}
-
 static double figure(const json_t *report, const char *name, const char *inner)
 {
 	const json_t *value = json_object_get(report, name);
@@ -419,7 +409,7 @@ static int leave_results(struct demo *demo, struct error *error)
 	if (!report)
 		return error_set(error, -ENOMEM, "out of memory");
 	if (result == 0)
-		result = write_report(report, demo->report, error);
+		result = json_write(report, demo->report, error);
 	if (result == 0 && !demo->options.json)
 		print_summary(demo, report);
 	else if (result == 0 && !json_print(report))

@@ -308,22 +308,12 @@ static json_t *all_figures(struct replay *replay)
 	return json;
 }
 
-static int write_json_file(const json_t *json, const char *path, struct error *error)
-{
-	FILE *file = fopen(path, "w");
-	if (!file)
-		return error_set(error, -errno, "%s: %s", path, strerror(errno));
-	bool wrong = json_dumpf(json, file, JSON_INDENT(1) | JSON_REAL_PRECISION(9)) != 0 || fputc('\n', file) == EOF;
-	wrong |= fclose(file) != 0;
-	return wrong ? error_set(error, -EIO, "%s: not written whole: %s", path, strerror(errno)) : 0;
-}
-
 static int write_json(struct replay *replay, struct error *error)
 {
 	json_t *json = all_figures(replay);
 	int result = 0;
 	if (strcmp(replay->options->json, "-") != 0)
-		result = write_json_file(json, replay->options->json, error);
+		result = json_write(json, replay->options->json, error);
 	else if (!json_print(json))
 		result = error_set(error, -ENOMEM, "out of memory");
 	json_decref(json);
